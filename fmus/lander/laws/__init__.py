@@ -1,0 +1,1 @@
+"""Laws: numbers in, numbers out, SI, no clock, no file."""

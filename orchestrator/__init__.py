@@ -1,0 +1,1 @@
+"""What runs around FMUs: scenario, master, results, command line."""
