@@ -1,0 +1,48 @@
+"""`jit`: one decorator for the hot laws, compiled by numba where numba is, plain Python where it is not.
+
+The same file is both. No fastmath and no fused operations beyond what the processor's own rounding gives, so that the
+two ways differ by the last bits of library functions (sin, exp) at most. Plain Python is asked for with
+NUMBA_DISABLE_JIT=1 or LANDER_PLAIN_PYTHON=1; division by zero gives inf or nan when compiled (error_model "numpy").
+"""
+
+import os
+from collections.abc import Callable
+from typing import Any, TypeVar, overload
+
+Law = TypeVar("Law", bound=Callable[..., Any])
+
+
+def wants_plain_python() -> bool:
+    """True when the environment asks for laws that are not compiled."""
+    return any(os.environ.get(name, "0") not in ("", "0") for name in ("LANDER_PLAIN_PYTHON", "NUMBA_DISABLE_JIT"))
+
+
+try:
+    if wants_plain_python():
+        raise ImportError
+    import numba
+except ImportError:
+    COMPILED = False
+else:
+    COMPILED = True
+
+
+@overload
+def jit(law: Law) -> Law: ...
+@overload
+def jit(*, inline: bool = False) -> Callable[[Law], Law]: ...
+
+
+def jit(law: Law | None = None, *, inline: bool = False) -> Any:
+    """Compile a law (cached on disk between processes), or give it back as it is. `inline` pastes it into its callers."""
+    if law is None:
+        return lambda it: jit_one(it, inline)
+    return jit_one(law, inline)
+
+
+def jit_one(law: Law, inline: bool) -> Law:
+    """The law itself, or numba's dispatcher around it."""
+    if not COMPILED:
+        return law
+    compiled: Law = numba.njit(cache=True, error_model="numpy", inline="always" if inline else "never")(law)
+    return compiled
