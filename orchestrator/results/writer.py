@@ -1,0 +1,102 @@
+"""The run directory: data first, then what follows from it, then pictures, so that a failure late loses little."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from orchestrator.master.result import RunResult
+from orchestrator.results import comparison, cost, history, plot_landing, plot_run, plot_style, provenance, references
+from orchestrator.results.channels import Array, Channels
+from orchestrator.results.energy import EnergyAccount, account_of
+from orchestrator.results.generic import generic, report
+from orchestrator.results.schema import ResultsTable
+from orchestrator.results.touchdown import touchdown
+
+
+def write(result: RunResult, out: Path) -> dict[str, Any]:
+    """Write everything the run has, complete or not, into `out` and return what summary.json holds."""
+    out.mkdir(parents=True, exist_ok=True)
+    history.write_csv(result, out / "history.csv")
+    history.write_parquet(result, out / "history.parquet")
+    history.write_solver_log(result.log, out / "solver_log.csv")
+    provenance.write_scenario(result, out / "scenario.toml")
+    provenance.write_inputs(result, out / "inputs.json")
+    table = ResultsTable.model_validate(result.results)
+    channels = Channels(result.times, result.columns)
+    account = account_of(channels, table)
+    published = _published(result, table, out)
+    summary = summarise(result, channels, table, account, published)
+    summary["directory"] = str(out)
+    (out / "summary.json").write_text(json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    if summary["comparison"] is not None:
+        text = comparison.markdown(result.title, summary, summary["comparison"], published)
+        (out / "comparison.md").write_text(text, encoding="utf-8")
+    _draw(result, channels, table, account, summary, out / "figures")
+    return summary
+
+
+def summarise(
+    result: RunResult, channels: Channels, table: ResultsTable, account: EnergyAccount | None, published: references.References
+) -> dict[str, Any]:
+    """summary.json, without touching a file. Values in the unit their key ends with; None where a channel is missing."""
+    summary: dict[str, Any] = {
+        "title": result.title,
+        "kind": table.resolved_kind,
+        "complete": result.complete,
+        "trusted": result.trusted,
+        "interrupted": result.interrupted,
+        "message": result.message,
+        "warnings": list(result.warnings),
+    }
+    landing = table.resolved_kind == "touchdown"
+    summary |= touchdown(channels, table) if landing else generic(channels, result.units)
+    summary["energy"] = None if account is None else account.summary()
+    summary["ledger"] = cost.ledger(result.ledger, None if account is None else account.initial)
+    summary["master"] = cost.master(result)
+    summary["report"] = report(channels, table)
+    compared = landing and bool(published.strokes or published.sections)
+    summary["comparison"] = comparison.compare(summary, published, table.compare, table.measured) if compared else None
+    summary["missing"] = list(channels.missing)
+    return summary
+
+
+def _published(result: RunResult, table: ResultsTable, out: Path) -> references.References:
+    """The reference file beside the scenario, copied into the run directory; else the scenario's own `[paper]` table."""
+    beside = [result.scenario_path.parent] if result.scenario_path else []
+    path = references.find(table.references, [*beside, Path("scenarios"), Path()])
+    if path is None:
+        return references.parse(result.paper)
+    if path.resolve() != (out / path.name).resolve():
+        shutil.copyfile(path, out / path.name)
+    return references.load(path)
+
+
+def _draw(
+    result: RunResult, channels: Channels, table: ResultsTable, account: EnergyAccount | None, summary: dict[str, Any], folder: Path
+) -> None:
+    """Every figure there is data for; a curve needs two rows."""
+    title, contacts = result.title, summary.get("contact_times_s", {})
+    figures: dict[str, Figure | None] = {}
+    if len(result.times) > 1:
+        if table.resolved_kind == "touchdown":
+            figures["motion"] = plot_landing.motion(title, channels, table, contacts)
+            figures["pads"] = plot_landing.pads(title, channels, table, contacts)
+            figures["struts"] = plot_landing.struts(title, channels, table, contacts)
+        figures["report"] = plot_run.reported(title, channels, table)
+        figures["energy"] = plot_run.energy(title, result.times, account, contacts) if account else None
+    if result.log:
+        figures["intervals"] = plot_run.intervals(title, *_attempts(result), contacts)
+    folder.mkdir(exist_ok=True)
+    for name, figure in figures.items():
+        if figure is not None:
+            plot_style.save(figure, folder / f"{name}.png")
+
+
+def _attempts(result: RunResult) -> tuple[Array, Array, Array]:
+    """Ends (s), lengths (s) and acceptance (1 or 0) of the attempted intervals."""
+    rows = np.array([(row.time + row.interval, row.interval, row.accepted) for row in result.log], dtype=np.float64)
+    return rows[:, 0], rows[:, 1], rows[:, 2]
