@@ -1,0 +1,70 @@
+"""RateSensor: what the ground received of the body's rates."""
+
+from math import exp, floor
+
+from ..shell import Unit, input_, nanoseconds, output, parameter, state
+
+AXES = ("yaw", "pitch", "roll")
+
+
+class RateSensor(Unit):
+    """Lag, bias, scale, sampling and quantisation of three rates, in this order.
+
+    τ dy/dt = u - y              first-order lag, exact for an input that is linear over the interval; τ = 0: y = u
+    z = scale y + bias
+    sampled at t0, t0 + Δ, t0 + 2Δ, ... and held; Δ = 0: not sampled. The instants are counted in nanoseconds.
+    telemetry = q round(z / q), half upwards; q = 0: not quantised
+
+    An input without slope is held over the interval. Neutral parameters (the defaults) give the input at the interval's end.
+    """
+
+    description = "Telemetry of the body's rates: lag, bias, scale, sampling and quantisation."
+    variables = (
+        parameter("time_constant", 0.0, "s", "time constant of the first-order lag", minimum=0.0),
+        parameter("sample_interval", 0.0, "s", "time between samples, 0: continuous", minimum=0.0, maximum=1e6),
+        parameter("quantum", 0.0, "rad/s", "step of the quantised rate, 0: none", minimum=0.0),
+        parameter("bias", (0.0, 0.0, 0.0), "rad/s", "added to yaw, pitch, roll rate"),
+        parameter("scale", 1.0, "1", "factor on all rates"),
+        *(input_(f"rates.{axis}", 0.0, "rad/s", f"true {axis} rate, frame B", nominal=0.1, slope=True) for axis in AXES),
+        *(output(f"telemetry.{axis}", 0.0, "rad/s", f"received {axis} rate", nominal=0.1, initially=(
+            f"rates.{axis}", "bias", "scale", "quantum")) for axis in AXES),
+        state("lagged", (0.0, 0.0, 0.0)),
+        state("held", (0.0, 0.0, 0.0)),
+        state("samples", 0.0, "samples taken since the start; counted, not summed"),
+    )
+
+    def initialise(self) -> None:
+        self["lagged"] = [self.value(f"rates.{axis}") for axis in AXES]
+        self["held"] = self["lagged"]
+        self["samples"] = 1.0
+        self.show()
+
+    def advance(self, time: float, step: float) -> None:
+        interval = nanoseconds(self.value("sample_interval"))
+        now, end = nanoseconds(time - self.start_time), nanoseconds(time + step - self.start_time)
+        lagged, held = self["lagged"], self["held"]
+        count = end // interval if interval else 0           # samples due after the first one, which is at the start
+        instant = (count * interval - now) * 1e-9
+        for i, axis in enumerate(AXES):
+            u, k = self.value(f"rates.{axis}"), self.value(f"rates.{axis}_slope")
+            if interval and count >= self.value("samples"):
+                held[i] = self.after(lagged[i], u, k, instant)
+            lagged[i] = self.after(lagged[i], u, k, step)
+        if not interval:
+            held[:] = lagged
+        self["samples"] = max(self.value("samples"), count + 1.0)
+        self.show()
+
+    def after(self, y: float, u: float, k: float, t: float) -> float:
+        """The lag's answer a time t after y, when the input is u + k t: y = u + k (t - τ) + (y0 - u + k τ) exp(-t/τ)."""
+        tau = self.value("time_constant")
+        if tau == 0.0:
+            return u + k * t
+        return u + k * (t - tau) + (y - u + k * tau) * exp(-t / tau)
+
+    def show(self) -> None:
+        """Fill the outputs from the held samples."""
+        scale, quantum = self.value("scale"), self.value("quantum")
+        for i, axis in enumerate(AXES):
+            z = scale * self["held"][i] + self["bias"][i]
+            self[f"telemetry.{axis}"] = quantum * floor(z / quantum + 0.5) if quantum > 0.0 else z
