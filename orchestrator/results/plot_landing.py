@@ -1,15 +1,13 @@
 """The landing in pictures: rates and attitude as in the paper's Figures 13 and 14, pads, struts."""
 
 import math
-from collections.abc import Mapping
 
 from matplotlib.figure import Figure
 
 from orchestrator.results.channels import Channels
-from orchestrator.results.plot_style import INK, contact_legend, dress, leg_colours, mark_contacts, new_figure
+from orchestrator.results.plot_style import INK, Contacts, contact_legend, dress, leg_colours, mark_contacts, new_figure, widen
 from orchestrator.results.schema import ResultsTable
 
-Contacts = Mapping[str, float | None]
 DEGREES = math.degrees(1.0)
 TIME = "time, s"
 
@@ -28,6 +26,7 @@ def motion(title: str, channels: Channels, table: ResultsTable, contacts: Contac
             column = channels.series(f"{table.body}.{quantity}.{axis}")
             if column is not None:
                 axes.plot(channels.times, column * DEGREES, color=INK, linewidth=1.3)
+            widen(axes, 1.0)
     contact_legend(figure, contacts, colours, solid=False)
     return figure
 
@@ -64,5 +63,6 @@ def struts(title: str, channels: Channels, table: ResultsTable, contacts: Contac
                 column = channels.series(f"{names.leg}.{strut}.{quantity}")
                 if column is not None:
                     axes.plot(channels.times, column * scale, color=colours[leg], linewidth=1.3)
+            widen(axes, 1.0)
     contact_legend(figure, contacts, colours, solid=True)
     return figure

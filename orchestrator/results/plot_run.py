@@ -1,15 +1,13 @@
 """The run in pictures: where the energy went, which intervals were taken, and the numbers a scenario asks for."""
 
-from collections.abc import Mapping
-
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from orchestrator.results.channels import Array, Channels
 from orchestrator.results.energy import EnergyAccount
-from orchestrator.results.plot_style import INK, dress, leg_colours, mark_contacts, new_figure
+from orchestrator.results.plot_style import INK, Contacts, contact_legend, dress, leg_colours, mark_contacts, new_figure, widen
 from orchestrator.results.schema import ResultsTable
 
-Contacts = Mapping[str, float | None]
 TIME = "time, s"
 
 
@@ -18,7 +16,7 @@ def energy(title: str, times: Array, account: EnergyAccount, contacts: Contacts)
     figure = new_figure(f"{title}: energy ledger", 9.5, 6.5)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
     curves = [
-        (account.mechanical, "#0072B2", "kinetic and potential (above the end state)"),
+        (account.mechanical, "#0072B2", "kinetic and potential, above the end state"),
         (account.absorbed, "#E69F00", "taken up by the soil"),
         (account.dissipated, "#D55E00", "dissipated in the units"),
         (account.supplied, "#56B4E9", "supplied by engine and effects"),
@@ -26,12 +24,15 @@ def energy(title: str, times: Array, account: EnergyAccount, contacts: Contacts)
     for values, colour, label in curves:
         upper.plot(times, values * 1e-3, color=colour, linewidth=1.4, label=label)
     dress(upper, "energy, kJ")
-    upper.legend(fontsize=8, frameon=False, loc="center right")
+    upper.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0)
     lower.plot(times, account.residual, color=INK, linewidth=1.2)
     lower.axhline(0.0, color=INK, linewidth=0.6, alpha=0.4)
+    widen(lower, 1.0)
     dress(lower, "unexplained, J", TIME)
+    colours = leg_colours(list(contacts))
     for axes in (upper, lower):
-        mark_contacts(axes, contacts, leg_colours(list(contacts)))
+        mark_contacts(axes, contacts, colours)
+    contact_legend(figure, contacts, colours, solid=False)
     return figure
 
 
@@ -45,9 +46,14 @@ def intervals(title: str, ends: Array, sizes: Array, accepted: Array, contacts: 
         label = f"{(~taken).sum()} refused, repeated shorter"
         axes.plot(ends[~taken], sizes[~taken] * 1e3, "x", color="#D55E00", markersize=5, label=label)
     axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
     dress(axes, "interval, ms", TIME)
-    mark_contacts(axes, contacts, leg_colours(list(contacts)))
-    axes.legend(fontsize=8, frameon=False, loc="lower right")
+    colours = leg_colours(list(contacts))
+    mark_contacts(axes, contacts, colours)
+    axes.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0)
+    contact_legend(figure, contacts, colours, solid=False)
     return figure
 
 

@@ -19,6 +19,10 @@ class References:
     sections: dict[str, dict[str, Any]] = field(default_factory=dict)
     source: str = ""
 
+    def unknown(self, names: list[str | None]) -> list[str]:
+        """Which of the names are neither a column nor a section."""
+        return [name for name in names if name and name not in self.strokes and name not in self.sections]
+
     def section(self, name: str | None) -> dict[str, Any]:
         """The observables published under `name`; empty where there are none."""
         return self.sections.get(name, {}) if name else {}

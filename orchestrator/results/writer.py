@@ -50,7 +50,7 @@ def summarise(
         "trusted": result.trusted,
         "interrupted": result.interrupted,
         "message": result.message,
-        "warnings": list(result.warnings),
+        "warnings": [*result.warnings, *_reference_warnings(table, published)],
     }
     landing = table.resolved_kind == "touchdown"
     summary |= touchdown(channels, table) if landing else generic(channels, result.units)
@@ -62,6 +62,13 @@ def summarise(
     summary["comparison"] = comparison.compare(summary, published, table.compare, table.measured) if compared else None
     summary["missing"] = list(channels.missing)
     return summary
+
+
+def _reference_warnings(table: ResultsTable, published: references.References) -> list[str]:
+    """A reference file or a column that is not there costs the comparison, not the run."""
+    known = sorted({*published.strokes, *published.sections})
+    where = f"{table.references or '[paper]'} has {', '.join(known) or 'nothing'}"
+    return [f"[results]: nothing is published under {name!r}; {where}" for name in published.unknown([table.compare, table.measured])]
 
 
 def _published(result: RunResult, table: ResultsTable, out: Path) -> references.References:

@@ -1,0 +1,87 @@
+"""Runs that are no landing, and the table a person reads."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+from results_samples import TABLE, landing
+from rich.console import Console
+
+from orchestrator.results import terminal_table, write
+from orchestrator.results.schema import ResultsTable
+
+REPORT = {"stroke": {"variable": "leg.primary.peak_stroke", "expected": 0.2838, "unit": "m", "source": "eq. 4"}}
+
+
+def drop(**changes):
+    times = np.linspace(0.0, 1.0, 11)
+    columns = {"leg.primary.peak_stroke": 0.284 * times, "leg.primary.load": 100.0 - times}
+    return landing(
+        11, **({"times": times, "columns": columns, "units": {"leg.primary.load": "N"}, "results": {"report": REPORT}} | changes)
+    )
+
+
+def printed(summary):
+    console = Console(width=100, record=True, file=None, quiet=False, force_terminal=False)
+    with console.capture() as captured:
+        console.print(terminal_table(summary))
+    return captured.get()
+
+
+def test_a_table_without_legs_is_generic_and_one_with_legs_a_touchdown():
+    assert ResultsTable().resolved_kind == "generic"
+    assert ResultsTable.model_validate(TABLE).resolved_kind == "touchdown"
+    assert ResultsTable.model_validate(TABLE | {"kind": "generic"}).resolved_kind == "generic"
+
+
+def test_a_misspelt_key_is_refused():
+    with pytest.raises(ValidationError, match="compair"):
+        ResultsTable.model_validate({"compair": "zupp"})
+
+
+def test_every_column_gets_its_last_least_and_greatest_value(tmp_path):
+    summary = write(drop(), tmp_path)
+    assert summary["columns"]["leg.primary.load"] == {"final": 99.0, "min": 99.0, "max": 100.0, "unit": "N"}
+    assert summary["comparison"] is None
+    assert (tmp_path / "figures" / "report.png").exists()
+
+
+def test_a_reported_number_stands_beside_what_was_expected(tmp_path):
+    row = write(drop(), tmp_path)["report"]["stroke"]
+    assert row["value"] == pytest.approx(0.284)
+    assert row["relative_difference"] == pytest.approx(0.284 / 0.2838 - 1.0)
+
+
+def test_a_reported_number_that_was_not_recorded_is_none_and_named(tmp_path):
+    summary = write(drop(columns={}), tmp_path)
+    assert summary["report"]["stroke"]["value"] is None
+    assert summary["report"]["stroke"]["relative_difference"] is None
+    assert summary["missing"] == ["leg.primary.peak_stroke"]
+    assert "not recorded: leg.primary.peak_stroke" in printed(summary)
+
+
+def test_the_least_or_greatest_value_can_be_reported(tmp_path):
+    report = {"load": {"variable": "leg.primary.load", "at": "max", "expected": 0.0}}
+    row = write(drop(results={"report": report}), tmp_path)["report"]["load"]
+    assert (row["value"], row["difference"], row["relative_difference"]) == (100.0, 100.0, None)
+
+
+def test_the_screen_shows_a_landing_with_the_paper_in_brackets(tmp_path):
+    text = printed(write(landing(100), tmp_path))
+    assert "complete  trusted  stands" in text
+    assert text.index("+Y  ") < text.index("+Z  ") < text.index("-Z  ")
+    assert "(2.85)" in text
+    assert "largest skid, cm" in text
+    assert str(tmp_path) in text.replace("\n", "").replace(" ", "")
+
+
+def test_the_screen_shows_a_failed_run_and_why(tmp_path):
+    text = printed(write(landing(0, complete=False, trusted=False, message="body.fmu: refused"), tmp_path))
+    assert "NOT COMPLETE  NOT TRUSTED" in text
+    assert "body.fmu: refused" in text
+
+
+def test_the_screen_shows_reported_numbers(tmp_path):
+    text = printed(write(drop(), tmp_path))
+    assert "0.2838 m" in text
+    assert "+0.070%" in text
+    assert "eq. 4" in text
