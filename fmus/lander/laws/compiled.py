@@ -5,8 +5,11 @@ two ways differ by the last bits of library functions (sin, exp) at most. Plain 
 NUMBA_DISABLE_JIT=1 or LANDER_PLAIN_PYTHON=1; division by zero gives inf or nan when compiled (error_model "numpy").
 """
 
+import contextlib
+import hashlib
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, overload
 
 Law = TypeVar("Law", bound=Callable[..., Any])
@@ -25,6 +28,30 @@ except ImportError:
     COMPILED = False
 else:
     COMPILED = True
+
+
+def forget_stale_code() -> None:
+    """Delete the compiled code beside the sources if any law has changed since.
+
+    numba renews a law's code when its own file changes, not when a law that it calls from another file does. An FMU's
+    package lies in a folder named by its content, so that only a package under work needs this.
+    """
+    laws = Path(__file__).parent
+    digest = hashlib.sha256()
+    for file in sorted(laws.glob("*.py")):
+        digest.update(file.name.encode() + file.read_bytes())
+    stamp = laws / "__pycache__" / "laws.sha256"
+    with contextlib.suppress(OSError):
+        if stamp.exists() and stamp.read_text() == digest.hexdigest():
+            return
+        stamp.parent.mkdir(exist_ok=True)
+        for code in laws.parent.rglob("*.nb[ci]"):
+            code.unlink(missing_ok=True)
+        stamp.write_text(digest.hexdigest())
+
+
+if COMPILED and __name__ == "lander.laws.compiled":
+    forget_stale_code()
 
 
 @overload

@@ -16,6 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 
 def source_digest(package: Path) -> str:
@@ -61,10 +62,16 @@ def loaded(package: Path, name: str) -> ModuleType:
     return module
 
 
-def unit_class(resources: Path, file: str, unit: str, digest: str) -> type:
-    """The class of a unit from the package in an FMU's resources."""
-    name = f"lander_{digest}"
+def unit_class(namespace: dict[str, Any], file: str, unit: str, digest: str) -> type:
+    """The class of a unit from the package beside the script with this namespace.
+
+    pythonfmu 0.7's binary gives back, at each instantiation, a reference to the namespace that it does not own, and after
+    five of them frees it in use. So one is added each time. It also leaves the resources on sys.path each time.
+    """
+    name, resources = f"lander_{digest}", Path(namespace["__file__"]).parent
     if name not in sys.modules:
         loaded(cached_copy(resources / "lander", digest), name)
+    vars(sys.modules[name]).setdefault("held_namespaces", []).append(namespace)
+    sys.path[:] = [entry for entry in sys.path if entry != str(resources)]
     found: type = getattr(importlib.import_module(f"{name}.units.{file}"), unit)
     return found

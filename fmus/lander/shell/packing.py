@@ -46,7 +46,7 @@ def main_script(unit: type[Unit], digest: str) -> str:
     """The text of main_script.py and the one line that names the unit."""
     file = unit.__module__.rpartition(".")[2]
     text = (PACKAGE / "shell" / "main_script.py").read_text("utf-8")
-    return f'{text}\n\n{unit.__name__} = unit_class(Path(__file__).parent, "{file}", "{unit.__name__}", "{digest}")\n'
+    return f'{text}\n\n{unit.__name__} = unit_class(globals(), "{file}", "{unit.__name__}", "{digest}")\n'
 
 
 def python_files(package: Path, target: str, deep: bool = True) -> dict[str, bytes]:
