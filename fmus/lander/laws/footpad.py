@@ -1,0 +1,210 @@
+"""Wrench of the regolith on one rigid footpad through its five contact points, with tangents; memory per point.
+
+The points lie in the pad's base plane, `height` below the ball joint: the centre and four on the rim (paper, Fig. 9). L throughout.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .compiled import jit
+from .soil import UNLATCHED, Soil, friction_scale, latched, normal_force, tangential_force
+from .surface import Surface, depth_at, normal_at
+from .vectors import (
+    ZERO,
+    Matrix,
+    Vector,
+    add,
+    apply,
+    axpy,
+    cross,
+    dot,
+    identity,
+    outer,
+    plus,
+    product,
+    scale,
+    skew,
+    sub,
+    times,
+)
+
+Array = NDArray[np.float64]
+
+POINTS = 5
+DATUM, SLIDE, PLACE, DEPTH = 0, 1, 4, 7  # columns of a point's memory: δ_MAX, slide (3), last place (3), last depth
+COLUMNS = 8
+
+
+class Footpad(NamedTuple):
+    """Shape of the pad."""
+
+    radius: float  # m
+    height: float  # base to ball joint, m
+
+
+class PadMotion(NamedTuple):
+    """Pose and twist of the pad at its ball joint, L."""
+
+    position: Vector  # m
+    attitude: Matrix  # pad axes to L
+    velocity: Vector  # m/s
+    rate: Vector  # rad/s
+
+
+class Wrench(NamedTuple):
+    """On the pad about the ball joint, L."""
+
+    force: Vector  # N
+    torque: Vector  # N m
+
+
+class PadTangents(NamedTuple):
+    """Minus the derivatives of force (x) and torque (r) by position (x) and rotation (r), and by velocity and rate."""
+
+    k_xx: Matrix
+    k_xr: Matrix
+    k_rx: Matrix
+    k_rr: Matrix
+    c_xx: Matrix
+    c_xr: Matrix
+    c_rx: Matrix
+    c_rr: Matrix
+
+
+@jit
+def lever(pad: Footpad, attitude: Matrix, i: int) -> Vector:
+    """From the ball joint to point i (0 is the centre), m, L. The pad's own x axis points up."""
+    down = -pad.height
+    if i == 0:
+        own = (down, 0.0, 0.0)
+    elif i == 1:
+        own = (down, pad.radius, 0.0)
+    elif i == 2:
+        own = (down, 0.0, pad.radius)
+    elif i == 3:
+        own = (down, -pad.radius, 0.0)
+    else:
+        own = (down, 0.0, -pad.radius)
+    return apply(attitude, own)
+
+
+@jit
+def tangential(normal: Vector, a: Vector) -> Vector:
+    """a without its part along the normal."""
+    return axpy(-dot(normal, a), normal, a)
+
+
+@jit
+def slide_at(memory: Array, i: int, place: Vector, depth: float, normal: Vector) -> Vector:
+    """Slide of point i (m) once it has moved to `place`: only the part of the way made in the soil counts."""
+    if depth <= 0.0:
+        return (memory[i, SLIDE], memory[i, SLIDE + 1], memory[i, SLIDE + 2])
+    before = memory[i, DEPTH]
+    share = 1.0 if before > 0.0 else depth / (depth - before)
+    moved = sub(place, (memory[i, PLACE], memory[i, PLACE + 1], memory[i, PLACE + 2]))
+    return axpy(share, tangential(normal, moved), (memory[i, SLIDE], memory[i, SLIDE + 1], memory[i, SLIDE + 2]))
+
+
+@jit
+def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> tuple[Wrench, PadTangents]:
+    """Force and torque of the soil on the pad, and their tangents. memory: (5, COLUMNS)."""
+    force, torque = ZERO, ZERO
+    zero = identity(0.0)
+    t = PadTangents(zero, zero, zero, zero, zero, zero, zero, zero)
+    for i in range(POINTS):
+        arm = lever(pad, motion.attitude, i)
+        place = add(motion.position, arm)
+        depth = depth_at(surface, place)
+        if depth <= 0.0:
+            continue
+        normal = normal_at(surface, place)
+        velocity = add(motion.velocity, cross(motion.rate, arm))
+        push = normal_force(soil, depth, -dot(normal, velocity), memory[i, DATUM])
+        slip = tangential(normal, velocity)
+        f = axpy(push.force, normal, tangential_force(soil, push.force, slip, slide_at(memory, i, place, depth, normal)))
+        force, torque = add(force, f), add(torque, cross(arm, f))
+
+        k = friction_scale(soil, sqrt(dot(slip, slip)))
+        along = axpy(-k, slip, normal)  # how F follows F_n
+        plane = plus(identity(1.0), times(-1.0, outer(normal, normal)))
+        k_i = plus(times(push.stiffness, outer(along, normal)), times(soil.plowing, plane))
+        turn = times(-(k / soil.friction) ** 2 if soil.friction > 0.0 else 0.0, outer(slip, slip))
+        c_i = plus(times(push.damping, outer(along, normal)), times(push.force * k, plus(plane, turn)))
+        t = with_point(t, k_i, c_i, skew(arm))
+    return Wrench(force, torque), t
+
+
+@jit
+def with_point(t: PadTangents, k: Matrix, c: Matrix, arm: Matrix) -> PadTangents:
+    """Tangents with one point's stiffness and damping at its lever [arm x] added."""
+    k_arm, c_arm = times(-1.0, product(k, arm)), times(-1.0, product(c, arm))
+    return PadTangents(
+        plus(t.k_xx, k),
+        plus(t.k_xr, k_arm),
+        plus(t.k_rx, product(arm, k)),
+        plus(t.k_rr, product(arm, k_arm)),
+        plus(t.c_xx, c),
+        plus(t.c_xr, c_arm),
+        plus(t.c_rx, product(arm, c)),
+        plus(t.c_rr, product(arm, c_arm)),
+    )
+
+
+@jit
+def remember(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> None:
+    """Bring every point's memory up to the pad's new motion: slide first (it needs the old place), then datum, place and depth."""
+    for i in range(POINTS):
+        arm = lever(pad, motion.attitude, i)
+        place = add(motion.position, arm)
+        depth = depth_at(surface, place)
+        normal = normal_at(surface, place)
+        slide = slide_at(memory, i, place, depth, normal)
+        rate = -dot(normal, add(motion.velocity, cross(motion.rate, arm)))
+        memory[i, DATUM] = latched(soil, depth, rate, memory[i, DATUM])
+        for j in range(3):
+            memory[i, SLIDE + j] = slide[j]
+            memory[i, PLACE + j] = place[j]
+        memory[i, DEPTH] = depth
+
+
+@jit
+def start_memory(surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> None:
+    """Virgin soil: nothing latched, no slide."""
+    for i in range(POINTS):
+        place = add(motion.position, lever(pad, motion.attitude, i))
+        memory[i, DATUM] = UNLATCHED
+        for j in range(3):
+            memory[i, SLIDE + j] = 0.0
+            memory[i, PLACE + j] = place[j]
+        memory[i, DEPTH] = depth_at(surface, place)
+
+
+@jit
+def deepest(memory: Array) -> float:
+    """Greatest depth of any point, m; negative while all are above the surface."""
+    depth = memory[0, DEPTH]
+    for i in range(1, POINTS):
+        depth = max(depth, memory[i, DEPTH])
+    return depth
+
+
+@jit
+def slid(memory: Array) -> float:
+    """Slide of the pad's centre since its first contact, m."""
+    s = (memory[0, SLIDE], memory[0, SLIDE + 1], memory[0, SLIDE + 2])
+    return sqrt(dot(s, s))
+
+
+@jit
+def pad_power(wrench: Wrench, motion: PadMotion) -> float:
+    """Power of the soil's wrench on the pad, W."""
+    return dot(wrench.force, motion.velocity) + dot(wrench.torque, motion.rate)
+
+
+@jit
+def half_way(w: Wrench, k: float) -> Wrench:
+    """k times the wrench."""
+    return Wrench(scale(k, w.force), scale(k, w.torque))
