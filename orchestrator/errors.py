@@ -6,8 +6,8 @@
     │   ├── UnitError                      a unit: missing or broken FMU, unknown parameter, value outside its range
     │   └── WiringError                    a connection: unknown port, wrong unit of measure, an input fed twice
     └── RunError           exit code 3   the run started and cannot be trusted or finished
-        ├── UnitFailed                     a unit refused a step, reported an error or gave a value that is not finite
-        └── Untrusted                      the step control could not hold its tolerance
+        ├── StepError                     a unit refused a step, reported an error or gave a value that is not finite
+        └── TrustError                      the step control could not hold its tolerance
 
 Anything else that reaches the user as a traceback is a bug. Ctrl-C is exit code 130 and keeps what was computed.
 """
@@ -50,11 +50,11 @@ class RunError(OrchestratorError):
     exit_code = 3
 
 
-class UnitFailed(RunError):
+class StepError(RunError):
     """A unit refused a step at the smallest interval, reported an error, or gave a value that is not finite."""
 
 
-class Untrusted(RunError):
+class TrustError(RunError):
     """The step control could not hold its tolerance often enough."""
 
 

@@ -30,7 +30,10 @@ class Attempt(NamedTuple):
 
 @dataclass(frozen=True)
 class LedgerRow:
-    """Work exchanged over one connection since the start, J. Each side reports the work done ON ITSELF, so a perfect coupling sums to zero."""
+    """Work exchanged over one connection since the start, J.
+
+    Each side reports the work done ON ITSELF, so a perfect coupling sums to zero.
+    """
 
     first: str
     """`unit.port`, e.g. "leg+Z.pad"."""

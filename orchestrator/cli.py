@@ -1,0 +1,161 @@
+"""The command line: `orchestrator run`, `show`, `list`. Exit codes stand in orchestrator.errors."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError
+from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
+from orchestrator.scenario.read import read_table
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, help="Couples FMUs of a lunar lander's touchdown and diagnoses the run.")
+
+ScenarioName = Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")]
+Overrides = Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated; the unit may be a glob.")]
+
+
+@app.command()
+def run(
+    scenario: ScenarioName,
+    out: Annotated[Path | None, typer.Option(help="Folder for the results [default: results/SCENARIO].")] = None,
+    overrides: Overrides = None,
+    stop_time: Annotated[float | None, typer.Option(help="s; instead of the scenario's.")] = None,
+    tolerance: Annotated[float | None, typer.Option(help="m; error allowed per step, instead of the scenario's.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no table.")] = False,
+) -> None:
+    """Run a scenario and write its results."""
+    from orchestrator import results  # slow to import, and only needed here
+    from orchestrator.simulation import Simulation, draw_up, fault, read_scenario
+
+    path = find_scenario(scenario)
+    changes: dict[str, Any] = {} if stop_time is None else {"stop_time": stop_time}
+    if tolerance is not None:
+        changes["master"] = {"tolerance": tolerance}
+    blueprint = draw_up(read_scenario(path, overrides or (), changes), path)
+    simulation = Simulation(blueprint)
+    table = blueprint.scenario.table
+    with _interruptible(simulation), _progress(table.title or path.stem, table.start_time, table.stop_time, quiet) as on_step:
+        result = simulation.run(on_step)
+    summary = results.write(result, out or Path("results") / path.stem)
+    if not quiet:
+        Console().print(results.terminal_table(summary))
+    for warning in result.warnings:
+        _complain("warning", warning)
+    if result.interrupted:
+        _complain("interrupted", result.message)
+        raise typer.Exit(EXIT_INTERRUPTED)
+    error = fault(result)
+    if error is not None:
+        raise error
+
+
+@app.command()
+def show(scenario: ScenarioName, overrides: Overrides = None) -> None:
+    """Show units, ports, connections and parameters without running anything."""
+    from orchestrator.scenario.show import overview
+    from orchestrator.simulation import draw_up, read_scenario
+
+    path = find_scenario(scenario)
+    console = Console()
+    for part in overview(draw_up(read_scenario(path, overrides or ()), path)):
+        console.print(part)
+
+
+@app.command("list")
+def list_scenarios() -> None:
+    """List the scenarios in scenarios/ with their titles."""
+    folder = scenario_folder()
+    if folder is None:
+        _complain("list", "no folder `scenarios` here or above; change to the project's folder")
+        raise typer.Exit(2)
+    for path in all_scenarios():
+        try:
+            title = str(read_table(path).get("title", ""))
+        except OrchestratorError as error:
+            title = f"(cannot be read: {error})"
+        typer.echo(f"{path.relative_to(folder).with_suffix('').as_posix():32} {title}")
+
+
+def main() -> None:
+    """Entry point: one line for what the user can mend, a traceback only for a bug.
+
+    Leaves by os._exit, because a Python runtime embedded in a unit may crash while the interpreter is taken down, after correct results.
+    """
+    code = 0
+    try:
+        code = app(standalone_mode=False) or 0
+    except OrchestratorError as error:
+        _complain("error", str(error))
+        code = error.exit_code
+    except typer.Exit as leaving:
+        code = leaving.exit_code
+    except (KeyboardInterrupt, typer.Abort):
+        _complain("interrupted", "nothing was computed")
+        code = EXIT_INTERRUPTED
+    except Exception as error:
+        if not hasattr(error, "format_message"):      # click's errors about options know how to say it
+            sys.excepthook(type(error), error, error.__traceback__)
+            code = 1
+        else:
+            _complain("error", error.format_message())
+            code = 2
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
+
+
+def _complain(kind: str, message: str) -> None:
+    typer.echo(f"{kind}: {message}", err=True)
+
+
+@contextmanager
+def _interruptible(simulation: Any) -> Iterator[None]:
+    """The first Ctrl-C ends the run after the present step: raised inside a unit, it would be that unit's fatal error."""
+
+    def stop(*_: object) -> None:
+        simulation.stop()
+        signal.signal(signal.SIGINT, before)
+
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _progress(title: str, start: float, stop: float, quiet: bool) -> Iterator[Any]:
+    """A bar on a terminal (stderr), nothing in a pipe."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield None
+        return
+    from time import monotonic
+
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    reached = TextColumn("{task.completed:.3f} of {task.total:.3f} s")
+    with Progress(TextColumn("{task.description}"), BarColumn(), reached, TimeRemainingColumn(), console=console, transient=True) as bar:
+        task = bar.add_task(title, total=stop - start)
+        shown = 0.0
+
+        def on_step(time: float) -> None:
+            nonlocal shown
+            if monotonic() - shown > 0.1:
+                shown = monotonic()
+                bar.update(task, completed=time - start)
+
+        yield on_step
+
+
+if __name__ == "__main__":
+    main()

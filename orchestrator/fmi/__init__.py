@@ -1,0 +1,1 @@
+"""FMI lives here and nowhere else in the orchestrator."""

@@ -1,0 +1,203 @@
+"""Where every input comes from, worked out once: index arrays into one board of numbers.
+
+    board = [ outputs at the start of the interval | outputs now | 0 | mismatches, six per port with a reduced interface model ]
+
+An input vector is u = board[first] − H/2·board[second] (second only where a slope is subtracted), so a step costs two
+array operations per unit whatever is connected. The naming rule is in docs/decisions/0001-architecture.md:
+a fresh mean m with slope k is sent as m − k·H/2 and k; everything else as its value at the start, with slope 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.master.ports import ReducedPort, motion_stems, reduced_ports
+from orchestrator.master.slave import Binding, Interface, Kind, Slave, Vector, stem
+from orchestrator.master.system import Link, System
+
+Places = NDArray[np.intp]
+MISMATCH = ("mismatch_velocity", "mismatch_angular_velocity")
+
+
+class Phase(Enum):
+    FIRST = 0
+    """First pass over an interval."""
+    AGAIN = 1
+    """Later passes: every repeated unit was stepped over this interval before."""
+    AFTER = 2
+    """Units stepped once, after acceptance."""
+
+
+@dataclass
+class Job:
+    """One unit in one phase."""
+
+    unit: int
+    slave: Slave
+    u: Vector
+    first: Places
+    slope_at: Places
+    """Places in `u` from which H/2 times a slope is subtracted ..."""
+    slope_from: Places
+    """... and the slopes' places on the board."""
+
+
+@dataclass
+class Board:
+    """The numbers all units share. `start`, `now` and `mismatch` are views."""
+
+    values: Vector
+    start: Vector
+    now: Vector
+    mismatch: Vector
+    offset: list[int]
+    """Per unit, where its outputs begin within `start` and `now`."""
+    names: list[tuple[int, str]]
+    """(unit, variable) of each output."""
+    place: dict[tuple[int, str], int] = field(default_factory=dict)
+
+    @property
+    def zero(self) -> int:
+        return 2 * len(self.names)
+
+    def now_at(self, unit: int, name: str) -> int:
+        return len(self.names) + self.place[unit, name]
+
+    def start_at(self, unit: int, name: str) -> int:
+        return self.place[unit, name]
+
+
+def companion(name: str, suffix: str) -> str:
+    """"pad.force[3]", "_mean" -> "pad.force_mean[3]"."""
+    base = stem(name)
+    return base + suffix + name[len(base) :]
+
+
+@dataclass
+class Plan:
+    system: System
+    board: Board
+    reduced: list[ReducedPort]
+    inputs: list[list[str]]
+    rates: list[list[str]]
+    vectors: list[Vector]
+
+    def jobs(self, phase: Phase, units: list[int], repeated: list[bool]) -> list[Job]:
+        """The units of a phase in order, each with the sources of its inputs."""
+        return [self._job(unit, phase, repeated) for unit in units]
+
+    def _job(self, unit: int, phase: Phase, repeated: list[bool]) -> Job:
+        u = self.vectors[unit]
+        places = {name: at for at, name in enumerate([*self.inputs[unit], *(f"der({r})" for r in self.rates[unit])])}
+        first = np.full(len(u), self.board.zero, dtype=np.intp)
+        slopes: list[tuple[int, int]] = []
+        for link in self.system.links:
+            if link.target_unit == unit:
+                fresh = _is_fresh(link.source_unit, unit, phase, repeated)
+                self._route(link, fresh, places, first, slopes)
+        if phase is Phase.AGAIN:
+            for number, port in enumerate(self.reduced):
+                if port.partner == unit:
+                    base = self.board.zero + 1 + 6 * number
+                    for at, name in enumerate(port.mismatch):
+                        if name in places:
+                            first[places[name]] = base + at
+        pairs = np.array(slopes, dtype=np.intp).reshape(-1, 2)
+        return Job(unit, self.system.slaves[unit], u, first, pairs[:, 0].copy(), pairs[:, 1].copy())
+
+    def _route(self, link: Link, fresh: bool, places: dict[str, int], first: Places, slopes: list[tuple[int, int]]) -> None:
+        board, source = self.board, link.source_unit
+        target = places[link.target]
+        mean, slope = companion(link.source, "_mean"), companion(link.source, "_slope")
+        if not fresh or (source, mean) not in board.place:
+            first[target] = board.start_at(source, link.source)
+            return
+        first[target] = board.now_at(source, mean)
+        sloped = places.get(companion(link.target, "_slope"), places.get(f"der({link.target})"))
+        if link.slope and sloped is not None and (source, slope) in board.place:
+            first[sloped] = board.now_at(source, slope)
+            slopes.append((target, board.now_at(source, slope)))
+
+
+def make_plan(system: System) -> Plan:
+    """Bind every unit's vectors to the board and remember what stands where."""
+    reduced = reduced_ports(system)
+    inputs = [_inputs(system, unit, reduced) for unit in range(len(system.slaves))]
+    rates = [_rates(system, unit) for unit in range(len(system.slaves))]
+    outputs = [_outputs(system, unit, reduced) for unit in range(len(system.slaves))]
+    total = sum(len(names) for names, _ in outputs)
+    values = np.zeros(2 * total + 1 + 6 * len(reduced))
+    board = Board(values, values[:total], values[total : 2 * total], values[2 * total + 1 :], [], [])
+    vectors: list[Vector] = []
+    for unit, (names, coupled) in enumerate(outputs):
+        begin = len(board.names)
+        board.offset.append(begin)
+        board.place.update({(unit, name): begin + at for at, name in enumerate(names)})
+        board.names.extend((unit, name) for name in names)
+        vectors.append(np.zeros(len(inputs[unit]) + len(rates[unit])))
+        y = board.now[begin : begin + len(names)]
+        system.slaves[unit].bind(Binding(inputs[unit], rates[unit], names, coupled, vectors[unit], y))
+    return Plan(system, board, reduced, inputs, rates, vectors)
+
+
+def _is_fresh(source: int, target: int, phase: Phase, repeated: list[bool]) -> bool:
+    """Whether the source was already computed over this interval when the target steps."""
+    if phase is Phase.FIRST:
+        return repeated[source] and source < target
+    if phase is Phase.AGAIN:
+        return repeated[source]
+    return repeated[source] or source < target
+
+
+def _inputs(system: System, unit: int, reduced: list[ReducedPort]) -> list[str]:
+    """Linked inputs, their slopes, and mismatches; real ones first."""
+    variables = system.slaves[unit].interface.variables
+    names: dict[str, None] = {}
+    for link in system.links:
+        if link.target_unit == unit:
+            names[link.target] = None
+            slope = companion(link.target, "_slope")
+            if slope in variables and variables[slope].causality == "input":
+                names[slope] = None
+    for port in reduced:
+        if port.partner == unit:
+            names.update(dict.fromkeys(name for name in port.mismatch if name in variables))
+    return _real_first(names, system.slaves[unit].interface)
+
+
+def _rates(system: System, unit: int) -> list[str]:
+    """Inputs whose derivative is set by the standard call: the unit interpolates and has no slope input of its own."""
+    interface = system.slaves[unit].interface
+    if not interface.claims("canInterpolateInputs"):
+        return []
+    targets = [link.target for link in system.links if link.target_unit == unit]
+    return [t for t in targets if interface.variables[t].kind is Kind.REAL and companion(t, "_slope") not in interface.variables]
+
+
+def _outputs(system: System, unit: int, reduced: list[ReducedPort]) -> tuple[list[str], int]:
+    """Outputs in the order of the board, and how many leading reals are fetched after every step."""
+    interface = system.slaves[unit].interface
+    coupled: dict[str, None] = {}
+    for link in system.links:
+        if link.source_unit == unit:
+            wanted = (link.source, companion(link.source, "_mean"), companion(link.source, "_slope"))
+            coupled.update(dict.fromkeys(name for name in wanted if name in interface.variables))
+    for port in reduced:
+        coupled.update(dict.fromkeys(port.outputs_of(unit)))
+    for pair in system.pairs:
+        for owner, name in ((pair.first_unit, pair.first_port), (pair.second_unit, pair.second_port)):
+            if owner == unit:
+                coupled.update(dict.fromkeys(v.name for v in interface.elements(f"{name}.work", "output")))
+    coupled.update(dict.fromkeys(v.name for s in motion_stems(system, unit) for v in interface.elements(s, "output")))
+    others = [name for lists in (system.recorded, system.watched) if lists for name in lists[unit]]
+    real = [name for name in coupled if interface.variables[name].kind is Kind.REAL]
+    rest = dict.fromkeys(name for name in [*coupled, *others] if name not in set(real))
+    return real + _real_first(rest, interface), len(real)
+
+
+def _real_first(names: dict[str, None], interface: Interface) -> list[str]:
+    return sorted(names, key=lambda name: interface.variables[name].kind is not Kind.REAL)

@@ -1,0 +1,27 @@
+"""Who is stepped how: repeated over an interval until it is accepted, or once per accepted step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from orchestrator.master.system import Link
+
+
+def repeated_units(count: int, links: Sequence[Link], eligible: Sequence[bool]) -> list[bool]:
+    """A unit is repeated when it can be (`eligible`: rolls back, not declared once) and stands in a loop of such units."""
+    reach = [set[int]() for _ in range(count)]
+    for link in links:
+        if eligible[link.source_unit] and eligible[link.target_unit]:
+            reach[link.source_unit].add(link.target_unit)
+    return [start in _reachable(reach, start) for start in range(count)]
+
+
+def _reachable(reach: Sequence[set[int]], start: int) -> set[int]:
+    seen: set[int] = set()
+    front = list(reach[start])
+    while front:
+        unit = front.pop()
+        if unit not in seen:
+            seen.add(unit)
+            front.extend(reach[unit])
+    return seen

@@ -1,0 +1,84 @@
+"""Before the first step: start values, consistent outputs, the solved initial parameter, and the truth of claimed rollback."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from orchestrator.errors import UnitError
+from orchestrator.master.plan import Job, Plan
+from orchestrator.master.slave import Slave, Status, Value, Vector
+
+Values = Sequence[Mapping[str, Value]]
+
+
+def assemble(board: Vector, job: Job, half: float) -> None:
+    """Write a unit's inputs: u = board[first] − half·board[slope]; `half` is half the interval, s."""
+    np.take(board, job.first, out=job.u, mode="clip")
+    if job.slope_at.size:
+        job.u[job.slope_at] -= half * board[job.slope_from]
+
+
+def initialise(plan: Plan, jobs: Sequence[Job], start: float, stop: float, values: Values) -> None:
+    """Sweep values round the system in initialisation mode until nothing changes, then leave it in order.
+
+    A unit that computes its outputs only when it leaves initialisation mode is served too: inputs are gathered again before each leave.
+    """
+    board = plan.board
+    board.values[:] = 0.0
+    for job in jobs:
+        job.slave.set_up(start, stop, values[job.unit])
+    for _ in range(len(jobs) + 1):
+        before = board.now.copy()
+        for job in jobs:
+            assemble(board.values, job, 0.0)
+            job.slave.exchange()
+            board.start[:] = board.now
+        if np.array_equal(before, board.now, equal_nan=True):
+            break
+    for job in jobs:
+        assemble(board.values, job, 0.0)
+        job.slave.begin()
+        board.start[:] = board.now
+
+
+def rolls_back(slave: Slave, y: Vector, time: float, interval: float) -> bool:
+    """Whether what the unit claims is true: save, step, restore, step again gives the same bits. Leaves the unit as it was."""
+    at_start = y.copy()
+
+    def stepped() -> tuple[Status, bytes]:
+        status = slave.step(time, interval)
+        if status is not Status.DISCARD:
+            slave.observe()
+        outcome = y.tobytes()
+        slave.restore()
+        y[:] = at_start
+        return status, outcome
+
+    slave.save()
+    first = stepped()
+    second = stepped()
+    third = stepped()
+    return first == second == third
+
+
+def solve_start(residual: Callable[[float], float], guess: float, nominal: float, what: str) -> float:
+    """The value at which the residual is zero, by secants.
+
+    `what` names the request for the message. Converged at 1e-12 of the residual's scale or when the value stops moving.
+    """
+    x0, x1 = guess, guess + 1e-2 * max(abs(guess), nominal)
+    f0 = residual(x0)
+    f1 = residual(x1)
+    scale = max(abs(f0), abs(f1), abs(x1 - x0))
+    for _ in range(40):
+        if abs(f0) < abs(f1):
+            x0, x1, f0, f1 = x1, x0, f1, f0
+        if abs(f1) <= 1e-12 * scale or abs(x1 - x0) <= 4e-16 * max(abs(x0), abs(x1)):
+            return x1
+        if f1 == f0:
+            raise UnitError(f"start: {what}: stays at {f1:.6g} whatever the value; vary something that moves it")
+        x0, x1 = x1, x1 - f1 * (x1 - x0) / (f1 - f0)
+        f0, f1 = f1, residual(x1)
+    raise UnitError(f"start: {what}: still {f1:.3g} after 40 trials, expects 0; give a start value nearer to the solution")

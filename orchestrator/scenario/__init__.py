@@ -1,0 +1,1 @@
+"""Scenarios: read, check, expand, wire. Nothing here loads a binary."""

@@ -1,0 +1,109 @@
+"""The scenario file, key by key (SI throughout)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from orchestrator.master.settings import MasterSettings
+
+Scalar = bool | int | float | str
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+_DEFAULT = MasterSettings()
+
+
+class Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class UnitTable(Table):
+    fmu: str
+    """Name looked up in the scenario's `fmus` folder, or a path to an .fmu relative to the scenario."""
+    once: bool = False
+    """Step it once per accepted step, whatever it can do: sampled guidance, telemetry."""
+    parameters: dict[str, Any] = {}
+    """Number, truth value, string, list (name[1], name[2] ...), or, in a unit expanded by [each], a table of these by instance."""
+
+
+class ConnectionTable(Table):
+    """Either two `ports`, joined both ways by member name, or one variable or vector `from` to another, `to`."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+    ports: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
+    source: str | None = Field(default=None, alias="from")
+    target: str | None = Field(default=None, alias="to")
+    slope: bool = True
+    """Send slopes with means on this connection."""
+
+    @model_validator(mode="after")
+    def _one_of_two_forms(self) -> ConnectionTable:
+        by_variable = self.source is not None and self.target is not None
+        if (self.ports is None) == (not by_variable) or (self.ports is not None and (self.source or self.target)):
+            raise ValueError("give either ports = [a, b] or both from and to")
+        return self
+
+
+class StartTable(Table):
+    """Before the start, solve the parameter `vary` so that the smallest of the outputs `zero` is `value`."""
+
+    vary: str
+    zero: str
+    value: float = 0.0
+
+
+class MasterTable(Table):
+    """Step control; the meaning of each key stands in MasterSettings."""
+
+    order: list[str] = []
+    max_interval: Positive = _DEFAULT.max_interval
+    min_interval: Positive = _DEFAULT.min_interval
+    tolerance: Positive = _DEFAULT.tolerance
+    passes: Annotated[int, Field(ge=1, le=20)] = _DEFAULT.passes
+    slopes: bool = _DEFAULT.slopes
+    model_lever: Positive = _DEFAULT.model_lever
+    motion_lever: Positive = _DEFAULT.motion_lever
+    unresolved_limit: Annotated[float, Field(ge=0.0, le=1.0)] = _DEFAULT.unresolved_limit
+
+    @model_validator(mode="after")
+    def _ordered(self) -> MasterTable:
+        if self.min_interval > self.max_interval:
+            raise ValueError(f"min_interval {self.min_interval:g} s exceeds max_interval {self.max_interval:g} s")
+        return self
+
+
+class RecordTable(Table):
+    interval: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 0.0
+    """s; 0 records every accepted step."""
+    variables: list[str] = ["*"]
+    """Globs over "unit.variable"; a vector is matched with or without its index."""
+
+
+class ScenarioTable(Table):
+    title: str = ""
+    start_time: Annotated[float, Field(allow_inf_nan=False)] = 0.0
+    stop_time: Annotated[float, Field(allow_inf_nan=False)]
+    fmus: str | None = None
+    each: dict[str, list[str]] = {}
+    units: Annotated[dict[str, UnitTable], Field(min_length=1)]
+    connections: list[ConnectionTable] = []
+    start: StartTable | None = None
+    master: MasterTable = MasterTable()
+    record: RecordTable = RecordTable()
+    paper: dict[str, Any] = {}
+    results: dict[str, Any] = {}
+
+
+def known_keys(path: tuple[int | str, ...]) -> list[str]:
+    """Keys allowed in the table at this path of a scenario."""
+    tables: dict[str, type[Table]] = {"master": MasterTable, "record": RecordTable, "start": StartTable}
+    match path:
+        case ():
+            return [*ScenarioTable.model_fields, "extends"]
+        case ("units", _):
+            return list(UnitTable.model_fields)
+        case ("connections", _):
+            return ["ports", "from", "to", "slope"]
+        case (str(name),) if name in tables:
+            return list(tables[name].model_fields)
+    return []

@@ -1,0 +1,96 @@
+"""A scenario file and the files it extends -> one checked table."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from orchestrator.errors import ScenarioError, nearest
+from orchestrator.scenario.model import ScenarioTable, known_keys
+
+Tree = dict[str, Any]
+
+
+def read_table(path: Path) -> Tree:
+    """The scenario as a plain tree: overlays merged, paths made absolute, nothing checked yet."""
+    return _read(path, ())
+
+
+def check_table(tree: Mapping[str, Any], where: str) -> ScenarioTable:
+    """The tree as a ScenarioTable, or one line about the first thing wrong with it."""
+    try:
+        table = ScenarioTable.model_validate(tree)
+    except ValidationError as error:
+        raise ScenarioError(f"{where}: {_first_fault(error)}") from None
+    if not table.stop_time > table.start_time:
+        raise ScenarioError(
+            f"{where}: stop_time {table.stop_time:g} s is not after start_time {table.start_time:g} s; set a later stop_time"
+        )
+    return table
+
+
+def merge(base: Tree, overlay: Tree) -> Tree:
+    """Tables merge key by key, an overlay's connections are added to the base's, anything else replaces what was there."""
+    merged = dict(base)
+    for key, value in overlay.items():
+        if isinstance(value, dict) and isinstance(merged.get(key), dict):
+            merged[key] = merge(merged[key], value)
+        elif key == "connections" and isinstance(value, list) and isinstance(merged.get(key), list):
+            merged[key] = [*merged[key], *value]
+        else:
+            merged[key] = value
+    return merged
+
+
+def _read(path: Path, above: tuple[Path, ...]) -> Tree:
+    if path.resolve() in above:
+        raise ScenarioError(f"{path}: extends itself by way of {above[-1].name}; remove one `extends`")
+    try:
+        tree = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        asked = f' (extended by {above[-1].name})' if above else ""
+        raise ScenarioError(f"{path}: no such file{asked}; `orchestrator list` shows the scenarios there are") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ScenarioError(f"{path}: not valid TOML: {error}; correct it there") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{path}: cannot be read ({error}); give a TOML file in UTF-8") from None
+    _anchor_paths(tree, path.parent)
+    extended = tree.pop("extends", None)
+    if extended is None:
+        return tree
+    if not isinstance(extended, str):
+        raise ScenarioError(f"{path}: extends = {extended!r}: expects the name of one TOML file")
+    return merge(_read(path.parent / extended, (*above, path.resolve())), tree)
+
+
+def _anchor_paths(tree: Tree, folder: Path) -> None:
+    """Paths are relative to the file that states them, also when another folder's file extends it."""
+    if isinstance(tree.get("fmus"), str):
+        tree["fmus"] = str((folder / tree["fmus"]).resolve())
+    units = tree.get("units")
+    for unit in units.values() if isinstance(units, dict) else ():
+        if isinstance(unit, dict) and isinstance(unit.get("fmu"), str) and is_path(unit["fmu"]):
+            unit["fmu"] = str((folder / unit["fmu"]).resolve())
+
+
+def is_path(fmu: str) -> bool:
+    return fmu.endswith(".fmu") or "/" in fmu or "\\" in fmu
+
+
+def _first_fault(error: ValidationError) -> str:
+    """Unknown keys first: a misspelt key is the usual cause of a missing one."""
+    faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+    fault = faults[0]
+    path = fault["loc"]
+    place = ".".join(str(part + 1) if isinstance(part, int) else part for part in path) or "the scenario"
+    if fault["type"] == "extra_forbidden":
+        return f"{place}: unknown key; {nearest(str(path[-1]), known_keys(path[:-1]))}"
+    if fault["type"] == "missing":
+        return f"{place}: is missing; add it"
+    message = fault["msg"].removeprefix("Value error, ")
+    given = "" if isinstance(fault["input"], dict) else f" = {fault['input']!r}"
+    return f"{place}{given}: {message[0].lower()}{message[1:]}"

@@ -1,0 +1,64 @@
+"""A system on the terminal, before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+from rich.text import Text
+
+from orchestrator.scenario.parameters import settable_stems
+
+if TYPE_CHECKING:
+    from orchestrator.simulation import Blueprint
+
+
+def overview(blueprint: Blueprint) -> Iterator[Table | Text]:
+    """Title, units, connections, parameters."""
+    table = blueprint.scenario.table
+    yield Text(f"{table.title or blueprint.scenario.where}: {table.start_time:g} to {table.stop_time:g} s", style="bold")
+    yield _units(blueprint)
+    yield _connections(blueprint)
+    yield _parameters(blueprint)
+
+
+def _units(blueprint: Blueprint) -> Table:
+    table = Table("unit", "FMU", "rollback", "ports", title="Units, in the order of stepping", title_justify="left")
+    for name, interface in blueprint.interfaces.items():
+        rollback = "claimed" if interface.claims("canGetAndSetFMUstate") else "no"
+        table.add_row(Text(name), Text(interface.model_name), rollback, Text(", ".join(interface.ports)))
+    return table
+
+
+def _connections(blueprint: Blueprint) -> Table:
+    table = Table("from", "", "to", "values", title="Connections", title_justify="left")
+    names = list(blueprint.interfaces)
+    for connection in blueprint.scenario.connections:
+        unit, _, first = connection.first.partition(".")
+        other, _, second = connection.second.partition(".")
+        ends = {(names.index(unit), first), (names.index(other), second)}
+        made = [k for k in blueprint.links if _belongs(k.source_unit, k.source, ends) and _belongs(k.target_unit, k.target, ends)]
+        arrow = "<->" if connection.both_ways else "->"
+        table.add_row(Text(connection.first), arrow, Text(connection.second), str(len(made)))
+    return table
+
+
+def _belongs(unit: int, variable: str, ends: set[tuple[int, str]]) -> bool:
+    stem = variable.partition("[")[0]
+    return (unit, variable) in ends or (unit, stem) in ends or (unit, stem.rpartition(".")[0]) in ends
+
+
+def _parameters(blueprint: Blueprint) -> Table:
+    table = Table("parameter", "value", "unit", "", "meaning", title="Parameters (* set by the scenario)", title_justify="left")
+    for place, (name, interface) in enumerate(blueprint.interfaces.items()):
+        values = blueprint.values[place]
+        for stem in settable_stems(interface):
+            elements = interface.vectors[stem]
+            given = any(v.name in values for v in elements)
+            if elements[0].causality == "input" and not given:
+                continue
+            shown = ", ".join(str(values.get(v.name, v.start)) for v in elements)
+            first = elements[0]
+            table.add_row(Text(f"{name}.{stem}"), Text(shown), Text(first.unit), "*" if given else "", Text(first.description))
+    return table

@@ -1,0 +1,227 @@
+"""From a scenario to a result: the one place where scenario, FMI and master meet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from orchestrator.errors import OrchestratorError, RunError, TrustError, UnitError, nearest
+from orchestrator.fmi.description import read_interface
+from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.master.master import Master
+from orchestrator.master.result import RunResult, UnitRecord
+from orchestrator.master.settings import MasterSettings
+from orchestrator.master.slave import Interface, Kind, Slave, Value
+from orchestrator.master.start import solve_start
+from orchestrator.master.system import Link, PortPair, System
+from orchestrator.scenario.expand import Scenario, expand
+from orchestrator.scenario.locate import find_fmu, fmu_folder
+from orchestrator.scenario.model import StartTable
+from orchestrator.scenario.parameters import SETTABLE, start_values
+from orchestrator.scenario.read import Tree, check_table, merge, read_table
+from orchestrator.scenario.record import matching_outputs
+from orchestrator.scenario.wiring import Wiring
+
+Progress = Callable[[float], None]
+
+
+@dataclass
+class Blueprint:
+    """A checked system, before any binary is loaded."""
+
+    scenario: Scenario
+    path: Path | None
+    interfaces: dict[str, Interface]
+    links: list[Link]
+    pairs: list[PortPair]
+    values: list[dict[str, Value]]
+    recorded: list[list[str]]
+    zero: list[list[str]] = field(default_factory=list)
+    """Outputs of the start condition, per unit."""
+
+
+def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None) -> Scenario:
+    """The scenario said out in full; `changes` are merged over the file (e.g. {"stop_time": 2.0})."""
+    tree = merge(read_table(path), changes or {})
+    return expand(check_table(tree, path.name), path.name, overrides)
+
+
+def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
+    """Every check that needs only the units' descriptions."""
+    folder = fmu_folder(scenario.table.fmus, path)
+    read: dict[Path, Interface] = {}
+    interfaces: dict[str, Interface] = {}
+    for unit in scenario.units:
+        fmu = find_fmu(unit.fmu, folder, f"{scenario.where}: units.{unit.name}")
+        interfaces[unit.name] = read[fmu] = read.get(fmu) or read_interface(fmu)
+    values = [start_values(f"{scenario.where}: {u.name}", interfaces[u.name], u.parameters) for u in scenario.units]
+    wiring = Wiring(interfaces, scenario.where, scenario.table.master.slopes)
+    for connection in scenario.connections:
+        wiring.connect(connection)
+    recorded = matching_outputs(scenario.record, interfaces, f"{scenario.where}: record.variables") if scenario.record else []
+    zero = matching_outputs(scenario.zero, interfaces, f"{scenario.where}: start.zero") if scenario.zero else []
+    return Blueprint(scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero)
+
+
+class Simulation:
+    """Loaded units under a master; `run` once."""
+
+    def __init__(self, blueprint: Blueprint, slaves: Sequence[Slave] | None = None) -> None:
+        """`slaves` replaces the FMUs by other units of the same names and interfaces."""
+        self.blueprint = blueprint
+        table = blueprint.scenario.table
+        if slaves is None:
+            slaves = [Fmi2Unit(name, _path(i), i) for name, i in blueprint.interfaces.items()]
+        once = frozenset(unit.name for unit in blueprint.scenario.units if unit.once)
+        self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero)
+        settings = MasterSettings(**table.master.model_dump(exclude={"order"}), record_interval=table.record.interval)
+        self.master = Master(self.system, settings)
+
+    def run(self, on_step: Progress | None = None) -> RunResult:
+        """Initialise, step to the end, collect. A unit that fails while stepping ends the run with what there is so far."""
+        table = self.blueprint.scenario.table
+        if table.start is None:
+            self._initialise(self.blueprint.values)
+        else:
+            self._solve_start(table.start)
+        self.master.prepare()
+        message = ""
+        try:
+            self.master.run(on_step)
+        except RunError as error:
+            message = str(error)
+        return self._result(message)
+
+    def stop(self) -> None:
+        """End after the present step; the result is then marked interrupted."""
+        self.master.stop_requested = True
+
+    def close(self) -> None:
+        for slave in self.system.slaves:
+            slave.close()
+
+    def _initialise(self, values: Sequence[dict[str, Value]]) -> None:
+        table = self.blueprint.scenario.table
+        self.master.initialise(table.start_time, table.stop_time, values)
+
+    def _solve_start(self, start: StartTable) -> None:
+        """Vary one parameter until the smallest of the watched outputs has the asked value."""
+        unit, name = self._varied(start)
+        watched = [(place, output) for place, outputs in enumerate(self.blueprint.zero) for output in outputs]
+        variable = self.system.slaves[unit].interface.variables[name]
+
+        def residual(x: float) -> float:
+            self.blueprint.values[unit][name] = x
+            self._initialise(self.blueprint.values)
+            return min(self.master.value(place, output) for place, output in watched) - start.value
+
+        guess = float(self.blueprint.values[unit].get(name, variable.start or 0.0))
+        what = f"{start.zero} = {start.value:g} by varying {start.vary}"
+        residual(solve_start(residual, guess, abs(variable.nominal), what))
+
+    def _varied(self, start: StartTable) -> tuple[int, str]:
+        where = self.blueprint.scenario.where
+        unit, _, name = start.vary.partition(".")
+        names = list(self.blueprint.interfaces)
+        if unit not in names:
+            raise UnitError(f'{where}: start.vary: no unit "{unit}"; {nearest(unit, names)}')
+        variables = self.blueprint.interfaces[unit].variables
+        known = [v.name for v in variables.values() if v.kind is Kind.REAL and v.causality in SETTABLE]
+        if name not in known:
+            raise UnitError(f'{where}: start.vary: unit {unit} has no real parameter "{name}"; {nearest(name, known)}')
+        return names.index(unit), name
+
+    def _result(self, message: str) -> RunResult:
+        master, table, scenario = self.master, self.blueprint.scenario.table, self.blueprint.scenario
+        accepted = sum(row.accepted for row in master.log)
+        interrupted = not master.complete and not message
+        trust = "" if message or interrupted else self._distrust(accepted)
+        if interrupted:
+            message = "interrupted by the user; everything up to there is kept"
+        shown = {f"{u}.{name}": i.variables[name] for u, i in self.blueprint.interfaces.items() for name in i.variables}
+        columns = master.recorder.columns()
+        return RunResult(
+            name=self.blueprint.path.stem if self.blueprint.path else "scenario",
+            title=table.title,
+            scenario=scenario.as_run(),
+            scenario_path=self.blueprint.path,
+            start_time=table.start_time,
+            stop_time=table.stop_time,
+            times=master.recorder.times,
+            columns=columns,
+            units={name: shown[name].unit for name in columns},
+            descriptions={name: shown[name].description for name in columns},
+            log=master.log,
+            ledger=master.ledger.rows(),
+            unit_records=[self._unit_record(place) for place in range(len(self.system.slaves))],
+            accepted=accepted,
+            rejected=len(master.log) - accepted,
+            unresolved=master.unresolved,
+            wall_time=master.wall_time,
+            wall_time_units=sum(slave.seconds for slave in self.system.slaves),
+            complete=master.complete,
+            trusted=master.complete and not trust,
+            interrupted=interrupted,
+            message=message or trust,
+            warnings=master.warnings,
+            unit_messages=[f"{slave.name}: {text}" for slave in self.system.slaves for text in slave.messages],
+            paper=table.paper,
+            results=table.results,
+        )
+
+    def _distrust(self, accepted: int) -> str:
+        """Why the run is not to be trusted; empty when it is."""
+        unresolved, settings = self.master.unresolved, self.master.settings
+        if unresolved <= settings.unresolved_limit * accepted:
+            return ""
+        worst = max((row for row in self.master.log if row.accepted and row.estimate == row.estimate), key=lambda row: row.estimate)
+        return (
+            f"{self.blueprint.scenario.where}: {unresolved} of {accepted} steps missed the tolerance {settings.tolerance:g} m at the smallest"
+            f" interval (worst {worst.estimate:.3g} m at {worst.limit}, t = {worst.time:.6g} s), at most {settings.unresolved_limit:.2%} may;"
+            f" lower master.min_interval ({settings.min_interval:g} s) or raise the tolerance"
+        )
+
+    def _unit_record(self, place: int) -> UnitRecord:
+        slave, master = self.system.slaves[place], self.master
+        repeated = master.repeated[place]
+        passes = master.settings.passes
+        stepped = f"{passes} passes, rolled back between" if repeated and passes > 1 else "1 pass" if repeated else "once per accepted step"
+        return UnitRecord(
+            name=slave.name,
+            fmu=slave.interface.path.name if slave.interface.path else "",
+            sha256=slave.interface.sha256,
+            model_name=slave.interface.model_name,
+            guid=slave.interface.guid,
+            fmi_version=slave.interface.fmi_version,
+            generation_tool=slave.interface.generation_tool,
+            capabilities=dict(slave.interface.capabilities),
+            rollback=master.rollback[place],
+            stepped=stepped,
+            steps=slave.steps,
+            seconds=slave.seconds,
+            parameters=dict(self.blueprint.values[place]),
+        )
+
+
+def fault(result: RunResult) -> OrchestratorError | None:
+    """What the command line must report, and with which exit code; None when all is well or the user interrupted."""
+    if result.interrupted or result.trusted:
+        return None
+    return TrustError(result.message) if result.complete else RunError(result.message)
+
+
+def run_scenario(path: Path, overrides: Sequence[str] = (), changes: dict[str, Any] | None = None) -> RunResult:
+    """For scripts and tests: read, load, run."""
+    simulation = Simulation(draw_up(read_scenario(path, overrides, changes), path))
+    return simulation.run()
+
+
+def _path(interface: Interface) -> Path:
+    if interface.path is None:
+        raise UnitError(f"{interface.model_name}: is not an FMU; give a unit that runs it")
+    return interface.path
+
+
+__all__ = ["Blueprint", "Simulation", "draw_up", "fault", "read_scenario", "run_scenario"]
