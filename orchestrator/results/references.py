@@ -18,6 +18,7 @@ class References:
     strokes: dict[str, dict[str, float | None]] = field(default_factory=dict)
     sections: dict[str, dict[str, Any]] = field(default_factory=dict)
     source: str = ""
+    fault: str = ""
 
     def unknown(self, names: list[str | None]) -> list[str]:
         """Which of the names are neither a column nor a section."""
@@ -29,12 +30,15 @@ class References:
 
 
 def load(path: Path) -> References:
-    """Read a reference file; sections `[group.case]` become `group_case`, `[table6]` the columns of strokes."""
-    return parse(tomllib.loads(path.read_text(encoding="utf-8")))
+    """Read a reference file; one that cannot be read gives empty references that say why in `fault`."""
+    try:
+        return parse(tomllib.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+        return References(fault=f"{path.name}: not usable as references ({type(error).__name__}: {error})")
 
 
 def parse(data: Mapping[str, Any]) -> References:
-    """References from the parsed file: NaN becomes None (no measurement), lengths become metres."""
+    """References from the parsed file: sections `[group.case]` become `group_case`, NaN None (no measurement), lengths m."""
     table = data.get("table6", {})
     columns: list[str] = table.get("columns", [])
     scale = METRES_PER[table.get("unit", "cm")]

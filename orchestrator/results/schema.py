@@ -1,8 +1,11 @@
 """The `[results]` table of a scenario: what a run is to be summed up as, and beside which published numbers."""
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from orchestrator.errors import ScenarioError, nearest
 
 
 class LegChannels(BaseModel):
@@ -44,3 +47,23 @@ class ResultsTable(BaseModel):
     def resolved_kind(self) -> Literal["touchdown", "generic"]:
         """`touchdown` as soon as legs are named, unless the scenario says otherwise."""
         return self.kind or ("touchdown" if self.legs else "generic")
+
+
+def read(table: Mapping[str, Any], where: str = "results") -> ResultsTable:
+    """The checked table, or a ScenarioError of one line. For whoever loads scenarios: before the run, not after it."""
+    try:
+        return ResultsTable.model_validate(table)
+    except ValidationError as error:
+        faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+        raise ScenarioError(_one_line(faults[0]["loc"], faults[0]["type"], faults[0]["msg"], where)) from None
+
+
+def _one_line(place: tuple[int | str, ...], kind: str, message: str, where: str) -> str:
+    name = ".".join([where, *(str(part) for part in place)])
+    if kind == "extra_forbidden":
+        tables: dict[str, type[BaseModel]] = {"legs": LegChannels, "report": ReportEntry}
+        owner = tables.get(str(place[0]), ResultsTable) if len(place) > 1 else ResultsTable
+        return f"{name}: unknown key; {nearest(str(place[-1]), owner.model_fields)}"
+    if kind == "missing":
+        return f"{name}: is missing; add it"
+    return f"{name}: {message[0].lower()}{message[1:]}"

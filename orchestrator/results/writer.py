@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from orchestrator.errors import ScenarioError
 from orchestrator.master.result import RunResult
 from orchestrator.results import comparison, cost, history, plot_landing, plot_run, plot_style, provenance, references
 from orchestrator.results.channels import Array, Channels
 from orchestrator.results.energy import EnergyAccount, account_of
 from orchestrator.results.generic import generic, report
-from orchestrator.results.schema import ResultsTable
+from orchestrator.results.schema import ResultsTable, read
 from orchestrator.results.touchdown import touchdown
 
 
@@ -25,11 +26,12 @@ def write(result: RunResult, out: Path) -> dict[str, Any]:
     history.write_solver_log(result.log, out / "solver_log.csv")
     provenance.write_scenario(result, out / "scenario.toml")
     provenance.write_inputs(result, out / "inputs.json")
-    table = ResultsTable.model_validate(result.results)
+    table, complaint = _table(result)
     channels = Channels(result.times, result.columns)
     account = account_of(channels, table)
     published = _published(result, table, out)
     summary = summarise(result, channels, table, account, published)
+    summary["warnings"] += complaint
     summary["directory"] = str(out)
     (out / "summary.json").write_text(json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
     if summary["comparison"] is not None:
@@ -64,17 +66,27 @@ def summarise(
     return summary
 
 
+def _table(result: RunResult) -> tuple[ResultsTable, list[str]]:
+    """The `[results]` table; one that cannot be read costs the run nothing but its special summary."""
+    try:
+        return read(result.results), []
+    except ScenarioError as error:
+        return ResultsTable(), [str(error)]
+
+
 def _reference_warnings(table: ResultsTable, published: references.References) -> list[str]:
     """A reference file or a column that is not there costs the comparison, not the run."""
     known = sorted({*published.strokes, *published.sections})
     where = f"{table.references or '[paper]'} has {', '.join(known) or 'nothing'}"
+    if published.fault:
+        return [published.fault]
     return [f"[results]: nothing is published under {name!r}; {where}" for name in published.unknown([table.compare, table.measured])]
 
 
 def _published(result: RunResult, table: ResultsTable, out: Path) -> references.References:
-    """The reference file beside the scenario, copied into the run directory; else the scenario's own `[paper]` table."""
-    beside = [result.scenario_path.parent] if result.scenario_path else []
-    path = references.find(table.references, [*beside, Path("scenarios"), Path()])
+    """The reference file beside or above the scenario, copied into the run directory; else the scenario's own `[paper]` table."""
+    above = list(result.scenario_path.resolve().parents) if result.scenario_path else []
+    path = references.find(table.references, [*above, Path("scenarios"), Path()])
     if path is None:
         return references.parse(result.paper)
     if path.resolve() != (out / path.name).resolve():

@@ -81,3 +81,10 @@ def test_the_reference_file_is_looked_for_in_order(tmp_path):
     assert find("paper.toml", [tmp_path / "a", tmp_path / "b"]) == tmp_path / "b" / "paper.toml"
     assert find("other.toml", [tmp_path / "b"]) is None
     assert find(None, [tmp_path]) is None
+
+
+def test_a_broken_reference_file_says_so_and_stops_nothing(tmp_path):
+    (tmp_path / "paper.toml").write_text("[table6]\ncolumns = ['a', 'b']\n[table6.struts]\nx = [1.0]\n")
+    broken = load(tmp_path / "paper.toml")
+    assert broken.strokes == {}
+    assert broken.fault.startswith("paper.toml: not usable as references (IndexError")

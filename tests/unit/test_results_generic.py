@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 from results_samples import TABLE, landing
 from rich.console import Console
 
+from orchestrator.errors import ScenarioError
 from orchestrator.results import terminal_table, write
-from orchestrator.results.schema import ResultsTable
+from orchestrator.results.schema import ResultsTable, read
 
 REPORT = {"stroke": {"variable": "leg.primary.peak_stroke", "expected": 0.2838, "unit": "m", "source": "eq. 4"}}
 
@@ -33,9 +33,25 @@ def test_a_table_without_legs_is_generic_and_one_with_legs_a_touchdown():
     assert ResultsTable.model_validate(TABLE | {"kind": "generic"}).resolved_kind == "generic"
 
 
-def test_a_misspelt_key_is_refused():
-    with pytest.raises(ValidationError, match="compair"):
-        ResultsTable.model_validate({"compair": "zupp"})
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"compair": "zupp"}, 'results.compair: unknown key; did you mean "compare"?'),
+        ({"legs": {"+Z": {"leg": "a", "soil": "b", "sole": "c"}}}, 'results.legs.+Z.sole: unknown key; did you mean "soil"?'),
+        ({"legs": {"+Z": {"leg": "a"}}}, "results.legs.+Z.soil: is missing; add it"),
+        ({"kind": "flight"}, "results.kind: input should be 'touchdown' or 'generic'"),
+    ],
+)
+def test_a_table_at_fault_is_told_in_one_line(table, message):
+    with pytest.raises(ScenarioError) as caught:
+        read(table)
+    assert str(caught.value) == message
+
+
+def test_a_table_at_fault_costs_a_finished_run_only_its_special_summary(tmp_path):
+    summary = write(drop(results={"compair": "zupp"}), tmp_path)
+    assert summary["kind"] == "generic"
+    assert "results.compair" in summary["warnings"][0]
 
 
 def test_every_column_gets_its_last_least_and_greatest_value(tmp_path):
