@@ -85,6 +85,6 @@ class Layout:
         text = "" if unit in ("", "1") else f" {unit}"
         if not np.isfinite(value):
             return f"{scalar.name} is {value}, expects a finite number"
-        if low is not None and value < low:
-            return f"{scalar.name} is {value!r}{text}, expects at least {low!r}{text}"
-        return f"{scalar.name} is {value!r}{text}, expects at most {high!r}{text}"
+        shown = f"{value:.0f}" if scalar.record.kind == "Integer" else repr(value)
+        rule = f"at least {low!r}" if low is not None and value < low else f"at most {high!r}"
+        return f"{scalar.name} is {shown}{text}, expects {rule}{text}"

@@ -20,6 +20,7 @@ from .records import Record
 
 PHASE, STALE, START_TIME = -3, -2, -1                     # slots of the shell's own states
 SETTING, STEPPING, FAILED = 0.0, 1.0, 2.0                 # phases: before the end of initialisation, after it, after it failed
+LONGEST = 500                                             # characters of a foreign exception's text; a compiler's can be pages
 
 
 class UnitError(Exception):
@@ -252,4 +253,5 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 def reason(error: Exception) -> str:
     """One line for a log: a UnitError's own words, or a foreign exception with its type."""
     text = " ".join(str(error).split())
+    text = text if len(text) <= LONGEST else f"{text[:LONGEST // 2]} ... {text[-LONGEST // 2:]}"
     return text if isinstance(error, UnitError) else f"{type(error).__name__}: {text}"

@@ -1,0 +1,90 @@
+"""Bad input to a built unit: named, discarded, never passed on, and the host lives."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hosted import DISCARD, OK, Hosted
+
+Host = Callable[..., Hosted]
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_an_input_that_is_no_number_is_named_and_not_passed_on(toy: Path, host: Host, value: float) -> None:
+    one = host(toy, name="left")
+    assert one.step(0.0, 1e-2) == OK
+    before = one.bytes_of_state()
+    one["end.force[2]"] = value
+    assert one.step(1e-2, 1e-2) == DISCARD
+    assert one.log[-1] == f"MassSpring left: at 0.01 s: end.force[2] is {value}, expects a finite number"
+    assert one["end.position[2]"] == 0.0
+    one["end.force[2]"] = 0.0
+    assert one.bytes_of_state() == before
+    assert one.step(1e-2, 1e-2) == OK
+
+
+def test_a_parameter_out_of_its_bounds_is_named_and_no_step_is_done(toy: Path, host: Host) -> None:
+    one = host(toy, mass=-5.0)
+    assert one["message"] == "mass is -5.0 kg, expects at least 1e-06 kg"
+    assert one.log == ["MassSpring it: mass is -5.0 kg, expects at least 1e-06 kg"]
+    assert one["end.position[1]"] == 0.1      # its start value: nothing was computed
+    for n in range(3):
+        assert one.step(n * 1e-2, 1e-2) == DISCARD
+    one.slave.reset()
+    one.begin(mass=5.0)
+    assert one["message"] == ""
+    assert one.step(0.0, 1e-2) == OK
+
+
+def test_an_integer_out_of_its_bounds_and_a_rule_of_the_unit_are_named(toy: Path, host: Host) -> None:
+    assert host(toy, law=3)["message"] == "law is 3, expects at most 2"
+    assert host(toy, rate=13.0)["message"] == "rate is 13.0 N/m, expects any other number"
+
+
+def test_a_units_own_refusal_leaves_it_as_before_the_step(toy: Path, host: Host) -> None:
+    one = host(toy)
+    one["end.force[1]"] = 1e4
+    before = one.bytes_of_state()
+    assert one.step(0.0, 0.1) == DISCARD
+    assert "expects at most longest, 5.0 m" in one["message"]
+    assert one.bytes_of_state() == before
+
+
+def test_an_exception_is_one_line_and_may_happen_again(toy: Path, host: Host) -> None:
+    one = host(toy, mass=3.0)
+    for n in range(3):
+        assert one.step(n * 1e-2, 1e-2) == DISCARD
+    assert one["message"] == "at 0.02 s: ZeroDivisionError: float division by zero"
+
+
+@pytest.mark.parametrize("step", [0.0, -1.0, float("nan")])
+def test_a_step_must_be_longer_than_nothing(toy: Path, host: Host, step: float) -> None:
+    one = host(toy)
+    assert one.step(0.0, step) == DISCARD
+    assert "expects more than 0 s" in one["message"]
+
+
+def test_an_unknown_value_reference_does_not_kill_the_host(toy: Path, host: Host) -> None:
+    one = host(toy)
+    one.slave.getReal([100000])
+    assert one["message"] == "value reference 100000 is unknown to get"
+    one.slave.setReal([100000], [1.0])
+    assert one["message"] == "value reference 100000 is unknown to set"
+
+
+def test_a_parameter_is_fixed_once_stepping(toy: Path, host: Host) -> None:
+    one = host(toy)
+    one["mass"] = 7.0
+    assert one["mass"] == 2.0
+    assert "mass is no input" in one["message"]
+
+
+def test_a_unit_with_wrong_parameters_never_crashes_its_host(fmus: dict[str, Path], host: Host) -> None:
+    for name, fmu in fmus.items():
+        parameters = [v for v in host(fmu).description.modelVariables if v.causality == "parameter" and v.type == "Real"]
+        for parameter in [v.name for v in parameters][:3]:
+            one = host(fmu, initialise=False)
+            one[parameter] = float("nan")
+            one.slave.exitInitializationMode()
+            assert one.step(0.0, 1e-3) == DISCARD, name
+            assert f"{parameter} is nan" in one["message"], name
