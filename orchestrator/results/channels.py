@@ -36,7 +36,8 @@ class Channels:
         column = self.series(name)
         if column is None or not np.isfinite(column).any():
             return [None, None]
-        return [float(np.nanmin(column) * scale), float(np.nanmax(column) * scale)]
+        known = column[np.isfinite(column)] * scale
+        return [float(known.min()), float(known.max())]
 
     def ending(self, suffix: str) -> list[str]:
         """Names of the columns that end so, as `.energy.kinetic`: one from each unit that has it."""

@@ -12,14 +12,16 @@ NONE = "–"
 
 
 def terminal_table(summary: Summary) -> RenderableType:
-    """The summary of `write` on one screen, for `rich.print`."""
+    """The summary of `write` on one screen, for `rich.print`. The run's own warnings are for the command line to tell."""
     parts: list[RenderableType] = [_headline(summary)]
     if summary["kind"] == "touchdown":
         parts.append(_legs(summary))
     if summary["report"]:
         parts.append(_report(summary["report"]))
     parts.append(_facts(summary))
-    parts += [Text(f"warning: {line}", style="yellow") for line in summary["warnings"]]
+    if struts := [leg for leg, bottomed in summary.get("bottomed", {}).items() if bottomed]:
+        parts.append(Text("a strut reached its stroke limit: " + ", ".join(struts), style="red"))
+    parts += [Text(line, style="yellow") for line in summary["notes"]]
     if summary["missing"]:
         parts.append(Text("not recorded: " + ", ".join(summary["missing"]), style="yellow"))
     return Group(*parts)

@@ -28,6 +28,7 @@ def touchdown(channels: Channels, table: ResultsTable) -> dict[str, Any]:
         "penetration_m": {leg: channels.final(f"{names.soil}.penetration") for leg, names in legs.items()},
         "skid_m": {leg: channels.final(f"{names.soil}.skid") for leg, names in legs.items()},
         "strokes_m": {f"{leg}.{strut}": crush(channels, names.leg, strut) for leg, names in legs.items() for strut in STRUTS},
+        "bottomed": {leg: has_bottomed(channels, names.leg) for leg, names in legs.items()},
     }
 
 
@@ -48,6 +49,13 @@ def crush(channels: Channels, leg: str, strut: str) -> float | None:
         return channels.final(f"{leg}.{strut}.peak_stroke")
     stroke = channels.series(f"{leg}.{strut}.stroke")
     return None if stroke is None else float(np.max(np.abs(stroke)))
+
+
+def has_bottomed(channels: Channels, leg: str) -> bool | None:
+    """Whether any strut of the leg was beyond its stroke limit at any recorded instant; None where the leg does not tell."""
+    if f"{leg}.bottomed" not in channels.columns:
+        return None
+    return (channels.span(f"{leg}.bottomed")[1] or 0.0) > 0.0
 
 
 def tilt(channels: Channels, body: str) -> float | None:

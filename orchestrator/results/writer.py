@@ -31,11 +31,11 @@ def write(result: RunResult, out: Path) -> dict[str, Any]:
     account = account_of(channels, table)
     published = _published(result, table, out)
     summary = summarise(result, channels, table, account, published)
-    summary["warnings"] += complaint
+    summary["notes"] += complaint
     summary["directory"] = str(out)
     (out / "summary.json").write_text(json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
     if summary["comparison"] is not None:
-        text = comparison.markdown(result.title, summary, summary["comparison"], published)
+        text = comparison.markdown(_title(result), summary, summary["comparison"], published)
         (out / "comparison.md").write_text(text, encoding="utf-8")
     _draw(result, channels, table, account, summary, out / "figures")
     return summary
@@ -46,13 +46,14 @@ def summarise(
 ) -> dict[str, Any]:
     """summary.json, without touching a file. Values in the unit their key ends with; None where a channel is missing."""
     summary: dict[str, Any] = {
-        "title": result.title,
+        "title": _title(result),
         "kind": table.resolved_kind,
         "complete": result.complete,
         "trusted": result.trusted,
         "interrupted": result.interrupted,
         "message": result.message,
-        "warnings": [*result.warnings, *_reference_warnings(table, published)],
+        "warnings": list(result.warnings),
+        "notes": _reference_notes(table, published),
     }
     landing = table.resolved_kind == "touchdown"
     summary |= touchdown(channels, table) if landing else generic(channels, result.units)
@@ -66,6 +67,10 @@ def summarise(
     return summary
 
 
+def _title(result: RunResult) -> str:
+    return result.title or result.name
+
+
 def _table(result: RunResult) -> tuple[ResultsTable, list[str]]:
     """The `[results]` table; one that cannot be read costs the run nothing but its special summary."""
     try:
@@ -74,7 +79,7 @@ def _table(result: RunResult) -> tuple[ResultsTable, list[str]]:
         return ResultsTable(), [str(error)]
 
 
-def _reference_warnings(table: ResultsTable, published: references.References) -> list[str]:
+def _reference_notes(table: ResultsTable, published: references.References) -> list[str]:
     """A reference file or a column that is not there costs the comparison, not the run."""
     known = sorted({*published.strokes, *published.sections})
     where = f"{table.references or '[paper]'} has {', '.join(known) or 'nothing'}"
@@ -98,7 +103,7 @@ def _draw(
     result: RunResult, channels: Channels, table: ResultsTable, account: EnergyAccount | None, summary: dict[str, Any], folder: Path
 ) -> None:
     """Every figure there is data for; a curve needs two rows."""
-    title, contacts = result.title, summary.get("contact_times_s", {})
+    title, contacts = _title(result), summary.get("contact_times_s", {})
     figures: dict[str, Figure | None] = {}
     if len(result.times) > 1:
         if table.resolved_kind == "touchdown":

@@ -116,9 +116,9 @@ def test_a_run_without_any_of_the_named_columns_names_them(tmp_path):
     assert set(summary["strokes_m"].values()) == {None}
 
 
-def test_a_column_nobody_published_is_a_warning(tmp_path):
+def test_a_column_nobody_published_is_noted(tmp_path):
     summary = write(landing(5, results=TABLE | {"compare": "glass_zup"}), tmp_path)
-    assert "'glass_zup'" in summary["warnings"][0]
+    assert "'glass_zup'" in summary["notes"][0]
 
 
 def test_the_references_travel_with_the_run(written):

@@ -51,7 +51,7 @@ def test_a_table_at_fault_is_told_in_one_line(table, message):
 def test_a_table_at_fault_costs_a_finished_run_only_its_special_summary(tmp_path):
     summary = write(drop(results={"compair": "zupp"}), tmp_path)
     assert summary["kind"] == "generic"
-    assert "results.compair" in summary["warnings"][0]
+    assert "results.compair" in summary["notes"][0]
 
 
 def test_every_column_gets_its_last_least_and_greatest_value(tmp_path):

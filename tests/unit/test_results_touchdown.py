@@ -89,3 +89,9 @@ def test_missing_columns_give_none_and_are_named():
     assert summary["peak_rates_deg_s"]["pitch"] == [None, None]
     assert summary["stable"] is None
     assert {"soil-Z.penetration", "soil-Z.skid", "body.rates.pitch"} <= set(channels.missing)
+
+
+def test_a_strut_that_reached_its_limit_once_has_bottomed():
+    times = landing().times
+    summary, _ = summed_up(**{"leg+Z.bottomed": (times > 0.1) & (times < 0.2), "leg-Z.bottomed": times < 0.0})
+    assert summary["bottomed"] == {"+Z": True, "-Z": False, "+Y": None, "-Y": None}
