@@ -79,9 +79,12 @@ def list_scenarios() -> None:
         raise typer.Exit(2)
     for path in all_scenarios():
         try:
-            title = str(read_table(path).get("title", ""))
+            tree = read_table(path)
+            title = str(tree.get("title", ""))
         except OrchestratorError as error:
-            title = f"(cannot be read: {error})"
+            tree, title = {}, f"(cannot be read: {error})"
+        if tree and "units" not in tree:      # data beside the scenarios
+            continue
         typer.echo(f"{path.relative_to(folder).with_suffix('').as_posix():32} {title}")
 
 

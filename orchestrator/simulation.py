@@ -16,6 +16,7 @@ from orchestrator.master.settings import MasterSettings
 from orchestrator.master.slave import Interface, Kind, Slave, Value
 from orchestrator.master.start import solve_start
 from orchestrator.master.system import Link, PortPair, System
+from orchestrator.results.schema import read as read_results_table
 from orchestrator.scenario.expand import Scenario, expand
 from orchestrator.scenario.locate import find_fmu, fmu_folder
 from orchestrator.scenario.model import StartTable
@@ -50,6 +51,7 @@ def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | Non
 
 def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
     """Every check that needs only the units' descriptions."""
+    read_results_table(scenario.table.results, f"{scenario.where}: results")
     folder = fmu_folder(scenario.table.fmus, path)
     read: dict[Path, Interface] = {}
     interfaces: dict[str, Interface] = {}
@@ -178,9 +180,9 @@ class Simulation:
             return ""
         worst = max((row for row in self.master.log if row.accepted and row.estimate == row.estimate), key=lambda row: row.estimate)
         return (
-            f"{self.blueprint.scenario.where}: {unresolved} of {accepted} steps missed the tolerance {settings.tolerance:g} m at the smallest"
-            f" interval (worst {worst.estimate:.3g} m at {worst.limit}, t = {worst.time:.6g} s), at most {settings.unresolved_limit:.2%} may;"
-            f" lower master.min_interval ({settings.min_interval:g} s) or raise the tolerance"
+            f"{self.blueprint.scenario.where}: {unresolved} of {accepted} steps missed the tolerance {settings.tolerance:g} m"
+            f" at the smallest interval (worst {worst.estimate:.3g} m at {worst.limit}, t = {worst.time:.6g} s),"
+            f" at most {settings.unresolved_limit:.2%} may; lower master.min_interval ({settings.min_interval:g} s) or raise the tolerance"
         )
 
     def _unit_record(self, place: int) -> UnitRecord:
