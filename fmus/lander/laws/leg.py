@@ -186,6 +186,13 @@ def strokes(leg: Leg, p: Vector) -> Vector:
 
 
 @jit
+def bottomed(leg: Leg, primary: float, right: float, left: float) -> bool:
+    """Whether any strut is beyond the end of its cartridge; strokes as `strokes` gives them, m."""
+    near, far = -leg.compression.limit, leg.tension.limit
+    return primary > leg.primary.limit or not (near <= right <= far and near <= left <= far)
+
+
+@jit
 def crushed(leg: Leg, p: Vector, crush: Crush) -> Crush:
     """Memories after the leg has been at p: each d_MAX only grows."""
     d = strokes(leg, p)

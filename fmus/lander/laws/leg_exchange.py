@@ -1,0 +1,161 @@
+"""A leg between its arrays: the blocks of a unit's memory in, one interval, the blocks out. The order is that of the unit's variables."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .base_motion import BaseMotion, BaseState, as_base, base_at
+from .blocks import put_matrix, put_quaternion, put_vector, quaternion, vector
+from .compiled import jit
+from .interface import interface_model, leg_energy, pad_state
+from .leg import Crush, Leg, leg_motion, mount_wrench, shape, strokes
+from .leg_stepping import LegState, PadLoad, Stage, start_state, step_leg
+from .soil_stepping import InterfaceModel
+from .vectors import ZERO, Vector, add, apply_transposed, rotation, scale, sub
+
+Array = NDArray[np.float64]
+MOUNT_WORK, PAD_WORK, KINETIC, POTENTIAL, DISSIPATED = range(5)  # the ledger's places
+
+
+@jit
+def read_base(body: Array) -> BaseMotion:
+    """Port `body`: position, quaternion, velocity, rate, acceleration with slope, angular acceleration with slope (25 numbers)."""
+    return BaseMotion(
+        vector(body, 0),
+        quaternion(body, 3),
+        vector(body, 7),
+        vector(body, 10),
+        vector(body, 13),
+        vector(body, 16),
+        vector(body, 19),
+        vector(body, 22),
+    )
+
+
+@jit
+def read_load(pad: Array) -> PadLoad:
+    """Wrench on the pad: force, slope, socket, torque, slope, socket (18 numbers)."""
+    return PadLoad(add(vector(pad, 0), vector(pad, 6)), add(vector(pad, 9), vector(pad, 15)), vector(pad, 3), vector(pad, 12))
+
+
+@jit
+def read_state(s: Array) -> LegState:
+    """Hidden states: p, v, pad's quaternion and rate, five memories (18 numbers)."""
+    return LegState(vector(s, 0), vector(s, 3), quaternion(s, 6), vector(s, 10), Crush(s[13], s[14], s[15], s[16], s[17]))
+
+
+@jit
+def write_state(s: Array, now: LegState, guess: Vector) -> None:
+    """Hidden states back, and where Newton starts next time."""
+    put_vector(s, 0, now.position)
+    put_vector(s, 3, now.velocity)
+    put_quaternion(s, 6, now.attitude)
+    put_vector(s, 10, now.rate)
+    s[13], s[14], s[15] = now.crush.primary, now.crush.right_tension, now.crush.right_compression
+    s[16], s[17] = now.crush.left_tension, now.crush.left_compression
+    put_vector(s, 18, guess)
+
+
+@jit
+def write_model(out: Array, m: InterfaceModel) -> None:
+    """Port members `model_*` (43 numbers)."""
+    put_vector(out, 0, m.acceleration)
+    put_matrix(out, 3, m.mobility)
+    put_matrix(out, 12, m.stiffness)
+    put_matrix(out, 21, m.damping)
+    put_vector(out, 30, m.base_velocity)
+    put_vector(out, 33, m.base_acceleration)
+    put_vector(out, 36, m.inertia)
+    out[39] = m.joint_damping
+    put_vector(out, 40, m.strut_rate)
+
+
+@jit
+def write_pad(leg: Leg, gravity: float, base: BaseState, now: LegState, force: Vector, ball: Vector, pad: Array, model: Array) -> None:
+    """The pad's motion (13 numbers) and the interface model."""
+    at = pad_state(base, now)
+    put_vector(pad, 0, at.position)
+    put_quaternion(pad, 3, at.attitude)
+    put_vector(pad, 7, at.velocity)
+    put_vector(pad, 10, at.rate)
+    write_model(model, interface_model(leg, gravity, base, now, force, ball))
+
+
+@jit
+def write_struts(leg: Leg, now: LegState, primary: float, right: float, left: float, struts: Array) -> None:
+    """Strokes, loads, peak strokes (9 numbers)."""
+    put_vector(struts, 0, strokes(leg, now.position))
+    put_vector(struts, 3, (primary, right, left))
+    for i in range(3):
+        struts[6 + i] = max(struts[6 + i], struts[i])
+
+
+@jit
+def write_energy(leg: Leg, gravity: float, base: BaseState, now: LegState, ledger: Array) -> None:
+    """Kinetic and potential energy into the ledger."""
+    ledger[KINETIC], ledger[POTENTIAL] = leg_energy(leg, gravity, base, now)
+
+
+@jit
+def write_mount(leg: Leg, last: Stage, impulse: Vector, angular_impulse: Vector, step: float, mount: Array) -> None:
+    """Wrench on the body: end value, mean over the interval, slope from the last end to this one (18 numbers)."""
+    at = shape(leg, last.position, last.velocity)
+    force, torque = mount_wrench(leg, last.base, last.position, at, last.motion.nodes, last.force, last.ball)
+    k = 1.0 / step
+    put_vector(mount, 6, scale(k, sub(force, vector(mount, 0))))
+    put_vector(mount, 15, scale(k, sub(torque, vector(mount, 9))))
+    put_vector(mount, 0, force)
+    put_vector(mount, 9, torque)
+    put_vector(mount, 3, scale(k, impulse))
+    put_vector(mount, 12, scale(k, angular_impulse))
+
+
+@jit
+def start_leg(leg: Leg, gravity: float, body: Array, load: Array, mount: Array, pad: Array, model: Array, struts: Array, ledger: Array, s: Array) -> None:
+    """States and outputs at the start: undeformed, virgin, at rest relative to the body, pad level with it."""
+    base = base_at(read_base(body), 0.0)
+    now = start_state(leg, base.attitude, base.rate)
+    write_state(s, now, ZERO)
+    force = read_load(load).force
+    frame = as_base(base, gravity)
+    own = apply_transposed(rotation(base.attitude), force)
+    at = shape(leg, now.position, now.velocity)
+    motion = leg_motion(leg, frame, now.position, now.velocity, own, ZERO, now.crush)
+    on_body = mount_wrench(leg, frame, now.position, at, motion.nodes, own, ZERO)
+    for i in range(2):
+        put_vector(mount, 9 * i, on_body[i])
+        put_vector(mount, 9 * i + 3, on_body[i])
+    write_pad(leg, gravity, base, now, force, ZERO, pad, model)
+    write_struts(leg, now, motion.primary, motion.right, motion.left, struts)
+    write_energy(leg, gravity, base, now, ledger)
+
+
+@jit
+def advance_leg(
+    leg: Leg,
+    gravity: float,
+    longest: float,
+    step: float,
+    body: Array,
+    load: Array,
+    mount: Array,
+    pad: Array,
+    model: Array,
+    struts: Array,
+    ledger: Array,
+    s: Array,
+) -> bool:
+    """Take the leg over `step` seconds and fill its outputs; False where Newton gave up (nothing is written then)."""
+    motion, wrench = read_base(body), read_load(load)
+    now, course, last = step_leg(leg, gravity, motion, wrench, read_state(s), step, longest, vector(s, 18))
+    if not last.ok:
+        return False
+    write_state(s, now, last.motion.acceleration)
+    write_mount(leg, last, course.impulse, course.angular_impulse, step, mount)
+    ledger[MOUNT_WORK] += course.mount_work
+    ledger[PAD_WORK] += course.pad_work
+    ledger[DISSIPATED] += course.dissipated
+    base = base_at(motion, step)
+    write_pad(leg, gravity, base, now, add(wrench.force, scale(step, wrench.force_slope)), last.ball, pad, model)
+    write_struts(leg, now, last.motion.primary, last.motion.right, last.motion.left, struts)
+    write_energy(leg, gravity, base, now, ledger)
+    return True

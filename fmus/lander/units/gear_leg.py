@@ -1,0 +1,176 @@
+"""GearLeg: one cantilever leg with its crushable struts and its footpad, at any azimuth."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..laws.honeycomb import DATUM_WEIGHT, Core, Stop, brake_damping
+from ..laws.leg import Leg, bottomed, disc_inertia
+from ..laws.leg_exchange import advance_leg, start_leg
+from ..laws.leg_geometry import GearDimensions, GeometryError, LegGeometry, leg_geometry
+from ..shell import Unit, UnitError, input_, output, parameter, state
+
+Array = NDArray[np.float64]
+
+
+class GearLeg(Unit):
+    """A primary strut on a universal joint, whose piston ends in the footpad's ball joint, braced by two secondaries on its cylinder.
+
+    The ball joint's position relative to the body is the leg's only coordinate (three stroking freedoms, no constraint); the pad turns on
+    its ball joint. Honeycomb: eqs. 1 to 4 of the paper, stages latching, memory per core, saturated damping, bearing friction, stops.
+    SDIRK2 inside, at most `longest_substep` long. The base moves from its pose and twist at the interval's start with the given accelerations.
+
+    mount is what the leg adds to the rigid undeformed leg, which the body carries: with the strut unloaded and the pad free it is near zero.
+    pad.model_* is the reduced interface model: a = a_f + Y F + A_x (x - x_n - V_b t - A_b t²/2) + A_v (v - v_n - A_b t), frame L.
+    Valid for strokes inside the limits of Table 3; beyond, the stops are stiff but finite, and `bottomed` tells.
+    """
+
+    description = "One cantilever landing gear leg with honeycomb struts and a footpad on a ball joint."
+    variables = (
+        parameter("azimuth", 0.0, "rad", "of the leg about B's x axis, from +Z to +Y", minimum=-7.0, maximum=7.0),
+        parameter("origin_height", 3.62, "m", "B's origin above the base of the undeformed footpads (Table 1)"),
+        parameter("footprint_radius", 4.242, "m", "Table 2"),
+        parameter("truss_radius_upper", 3.061, "m", "Table 2"),
+        parameter("truss_radius_lower", 2.996, "m", "Table 2"),
+        parameter("truss_height_upper", 2.874, "m", "above the footpad base, Table 2"),
+        parameter("truss_height_lower", 1.19, "m", "above the footpad base, Table 2"),
+        parameter("footpad_height", 0.10, "m", "base to ball joint, Table 2"),
+        parameter("secondary_truss_width", 2.239, "m", "between the two lower truss points, Table 2"),
+        parameter("connection", 1.157, "m", "from the ball joint up the primary to the secondaries, Table 2"),
+        parameter("footpad_radius", 0.47, "m", "37 in diameter; not in the paper", minimum=1e-3),
+        parameter("primary_strut_mass", 43.1, "kg", "cylinder, Table 1", minimum=0.0),
+        parameter("primary_piston_mass", 13.6, "kg", "Table 1", minimum=1e-3),
+        parameter("secondary_strut_mass", 5.12, "kg", "each, Table 1", minimum=0.0),
+        parameter("footpad_mass", 11.0, "kg", "Table 1", minimum=1e-3),
+        parameter("vehicle_mass", 7063.5, "kg", "in the paper's mass-normalised strut damping", minimum=1.0),
+        parameter("gravity", 1.63, "m/s2", "along -x of L", minimum=0.0, maximum=100.0),
+        parameter("primary_load", (20017.0, 42358.0), "N", "stages 1 and 2, Table 3", minimum=1.0),
+        parameter("primary_boundary", 0.254, "m", "stroke at the end of stage 1, Table 3", minimum=1e-3),
+        parameter("primary_limit", 0.812, "m", "stroke limit, Table 3", minimum=1e-3),
+        parameter("compression_load", 20017.0, "N", "secondary, Table 3", minimum=1.0),
+        parameter("compression_limit", 0.305, "m", "secondary, Table 3", minimum=1e-3),
+        parameter("tension_load", (2224.0, 22241.0), "N", "secondary, stages 1 and 2, Table 3", minimum=1.0),
+        parameter("tension_boundary", 0.102, "m", "secondary, end of stage 1, Table 3", minimum=1e-3),
+        parameter("tension_limit", 0.407, "m", "secondary, Table 3", minimum=1e-3),
+        parameter("transition_width", 1e-3, "m", "s of eqs. 2 and 3", minimum=1e-6, maximum=0.05),
+        parameter("damping_ratio", 1.0, "1", "ζ of the struts", minimum=0.0),
+        parameter("printed_datum_weight", False, "", "eq. 3 to the letter: crushing at 0.9975 of the load", boolean=True),
+        parameter("bearing_friction", 0.23, "1", "μ_B, Table 3", minimum=0.0),
+        parameter("bearing_slip_velocity", 1e-2, "m/s", "regularises the sign of the bearing friction", minimum=1e-6),
+        parameter("joint_damping", 100.0, "N.s/m", "of every joint; N.m.s/rad where it turns", minimum=0.0),
+        parameter("stop_stiffness", 4e7, "N/m", "of the end stops: that of the stiffest core, F/s", minimum=1.0),
+        parameter("stop_damping", 6e4, "N.s/m", "of the end stops: critical for piston and pad", minimum=0.0),
+        parameter("longest_substep", 2.5e-4, "s", "of the integrator inside the leg", minimum=1e-7),
+        input_("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
+        input_("body.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "B to L", nominal=1.0),
+        input_("body.velocity", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame L", nominal=1.0),
+        input_("body.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame B", nominal=0.1),
+        input_("body.acceleration", (0.0, 0.0, 0.0), "m/s2", "of the origin of B, frame L", nominal=1.0, slope=True),
+        input_("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, slope=True),
+        input_("pad.force", (0.0, 0.0, 0.0), "N", "on the pad, frame L", nominal=1e4, slope=True, added=True),
+        input_("pad.torque", (0.0, 0.0, 0.0), "N.m", "on the pad about the ball joint, frame L", nominal=1e3, slope=True, added=True),
+        output("mount.force", (0.0, 0.0, 0.0), "N", "on the body, frame B, less the rigid leg's", nominal=1e4, mean=True, slope=True),
+        output("mount.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, mean=True, slope=True),
+        output("pad.position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
+        output("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0),
+        output("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
+        output("pad.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0),
+        output("pad.model_acceleration", (0.0, 0.0, 0.0), "m/s2", "a_f: of the ball joint without force, frame L", nominal=1.0),
+        output("pad.model_mobility", (0.0,) * 9, "1/kg", "Y, by rows, frame L", nominal=0.04),
+        output("pad.model_stiffness", (0.0,) * 9, "1/s2", "A_x, by rows, frame L", nominal=1e6),
+        output("pad.model_damping", (0.0,) * 9, "1/s", "A_v, by rows, frame L", nominal=1e4),
+        output("pad.model_base_velocity", (0.0, 0.0, 0.0), "m/s", "V_b: of the body's point at the ball joint, frame L", nominal=1.0),
+        output("pad.model_base_acceleration", (0.0, 0.0, 0.0), "m/s2", "A_b: of the same point, frame L", nominal=1.0),
+        output("pad.model_inertia", (0.0, 0.0, 0.0), "kg.m2", "of the pad about its own axes", nominal=1.0),
+        output("pad.model_joint_damping", 0.0, "N.m.s/rad", "of the ball joint", nominal=100.0),
+        output("pad.model_strut_rate", (0.0, 0.0, 0.0), "rad/s", "of the piston, frame L", nominal=1.0),
+        output("primary.stroke", 0.0, "m", "compression", nominal=0.1),
+        output("right.stroke", 0.0, "m", "elongation of the secondary to the right, looking outward", nominal=0.1),
+        output("left.stroke", 0.0, "m", "elongation of the secondary to the left", nominal=0.1),
+        output("primary.load", 0.0, "N", "axial force, compression positive", nominal=1e4),
+        output("right.load", 0.0, "N", "axial force, tension positive", nominal=1e4),
+        output("left.load", 0.0, "N", "axial force, tension positive", nominal=1e4),
+        output("primary.peak_stroke", 0.0, "m", "greatest compression so far", nominal=0.1),
+        output("right.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1),
+        output("left.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1),
+        output("bottomed", False, "", "whether any strut is beyond its stroke limit", boolean=True),
+        output("mount.work", 0.0, "J", "done on the body since the start", nominal=1e3),
+        output("pad.work", 0.0, "J", "done on the leg by the pad's wrench since the start", nominal=1e3),
+        output("energy.kinetic", 0.0, "J", "less that of the rigid leg, which the body carries", nominal=1e3),
+        output("energy.potential", 0.0, "J", "less that of the rigid leg", nominal=1e3),
+        output("energy.dissipated", 0.0, "J", "taken up by struts and joints since the start", nominal=1e3),
+        state("leg.position", (0.0, 0.0, 0.0)),
+        state("leg.velocity", (0.0, 0.0, 0.0)),
+        state("leg.attitude", (1.0, 0.0, 0.0, 0.0)),
+        state("leg.rate", (0.0, 0.0, 0.0)),
+        state("leg.crush", (0.0,) * 5),
+        state("leg.guess", (0.0, 0.0, 0.0), "last acceleration, where Newton starts"),
+    )
+
+    def dimensions(self) -> GearDimensions:
+        """Table 2 of this leg."""
+        return GearDimensions(**{name: self.value(name) for name in GearDimensions._fields})
+
+    def check(self) -> Iterable[str]:
+        for strut in ("primary", "tension"):
+            if not self.value(f"{strut}_boundary") < self.value(f"{strut}_limit"):
+                yield (
+                    f"{strut}_boundary is {self.value(f'{strut}_boundary'):g} m, "
+                    f"expects less than {strut}_limit, {self.value(f'{strut}_limit'):g} m"
+                )
+        try:
+            self.geometry()
+        except GeometryError as error:
+            yield str(error)
+
+    def geometry(self) -> LegGeometry:
+        """The undeformed leg; GeometryError where it cannot close."""
+        return leg_geometry(self.dimensions(), self.value("azimuth"), self.value("origin_height"), self.value("primary_limit"))
+
+    def core(self, loads: Array, boundary: float, limit: float) -> Core:
+        """A cartridge with the leg's common parameters; its damping is that of its greatest load."""
+        width, mass = self.value("transition_width"), self.value("vehicle_mass")
+        c = brake_damping(self.value("damping_ratio"), float(loads.max()), width, mass)
+        weight = 1.0 if self.value("printed_datum_weight") else DATUM_WEIGHT
+        return Core(float(loads[0]), float(loads[-1]), boundary, limit, width, c, weight)
+
+    def prepare(self) -> None:
+        pad = disc_inertia(self.value("footpad_mass"), self.value("footpad_radius"))
+        reach = self.value("compression_limit")
+        self.leg = Leg(
+            self.geometry(),
+            self.value("primary_strut_mass"),
+            self.value("primary_piston_mass"),
+            self.value("secondary_strut_mass"),
+            self.value("footpad_mass"),
+            pad,
+            self.core(self["primary_load"], self.value("primary_boundary"), self.value("primary_limit")),
+            self.core(self["tension_load"], self.value("tension_boundary"), self.value("tension_limit")),
+            self.core(self["compression_load"], 2.0 * reach, reach),
+            Stop(self.value("stop_stiffness"), self.value("stop_damping"), 1e-4),
+            self.value("bearing_friction"),
+            self.value("bearing_slip_velocity"),
+            self.value("joint_damping"),
+        )
+        self.inputs = self.span("body.position", "body.angular_acceleration_slope"), self.span("pad.force", "pad.torque_added")
+        self.outputs = (
+            self.span("mount.force", "mount.torque_slope"),
+            self.span("pad.position", "pad.angular_velocity"),
+            self.span("pad.model_acceleration", "pad.model_strut_rate"),
+            self.span("primary.stroke", "left.peak_stroke"),
+            self.span("mount.work", "energy.dissipated"),
+        )
+        self.states = self.span("leg.position", "leg.guess")
+
+    def initialise(self) -> None:
+        start_leg(self.leg, self.value("gravity"), *self.inputs, *self.outputs, self.states)
+
+    def advance(self, time: float, step: float) -> None:
+        gravity, longest = self.value("gravity"), self.value("longest_substep")
+        if not advance_leg(self.leg, gravity, longest, step, *self.inputs, *self.outputs, self.states):
+            raise UnitError(
+                f"the struts' equations did not converge over {step:g} s with pad.force {self['pad.force'].round(1).tolist()} N; "
+                "a shorter interval may do"
+            )
+        self["bottomed"] = float(bottomed(self.leg, *self.span("primary.stroke", "left.stroke").tolist()))

@@ -1,0 +1,124 @@
+"""RegolithContact: the soil under one footpad."""
+
+from ..laws.footpad import COLUMNS, POINTS, Footpad
+from ..laws.soil import Soil
+from ..laws.soil_exchange import advance_soil, start_soil
+from ..laws.surface import inclined_plane
+from ..shell import Unit, UnitError, input_, output, parameter, state
+
+DEEP = 0.05  # m: a pad that starts deeper than this is a mistake of the scenario, not a landing
+
+
+class RegolithContact(Unit):
+    """Reaction of an inclined plane of regolith on a footpad through five points, and the pad's motion against it.
+
+    law 1  the paper's: F_n = w_b w_r (K_n δ^p + w_d C_n δ̇), eqs. 5 to 9. It needs a residual sink rate: a resting pad creeps by design at
+           about 0.05 mm/s (below 0.1 mm/s), and a rebound is free of force.
+    law 2  rate-independent compaction: plastic flow on K_n δ^p, elastic unloading over the band b, no creep.
+    F_t = -μ F_n v/|v| - K_p δ_t against slip and slide. Table 4 is per footpad: a fifth of K_n, C_n and K_p goes to each point.
+
+    The pad is integrated here against the law over each interval, with the leg as reduced interface model (pad.model_*); without a model the
+    pad goes on at its last velocity. pad.mismatch_* is what the leg did otherwise in the last pass, and is made good.
+    Valid for penetrations of some centimetres, on which Table 4 was fitted; a start deeper than 5 cm is refused.
+    """
+
+    description = "Regolith under one footpad: normal contact, friction and plowing at five points."
+    variables = (
+        parameter("law", 1, "1", "1: published, with residual sink rate; 2: rate-independent", integer=True, minimum=1, maximum=2),
+        parameter("bearing_strength", 350254.0, "N/m", "K_n per footpad, N/m^p (Table 4)", minimum=1.0),
+        parameter("compaction_exponent", 1.0, "1", "p (Table 4)", minimum=0.5, maximum=4.0),
+        parameter("rebound_band", 1e-4, "m", "b (Table 4)", minimum=1e-6, maximum=0.1),
+        parameter("residual_sink_rate", 1e-4, "m/s", "(Table 4)", minimum=1e-7, maximum=0.1),
+        parameter("damping", 0.0, "N.s/m", "C_n per footpad (Table 4)", minimum=0.0),
+        parameter("damping_activation_depth", 0.0, "m", "δ_d (Table 4); 0: full damping at once", minimum=0.0),
+        parameter("friction", 0.33, "1", "μ (Table 4)", minimum=0.0),
+        parameter("plowing", 1454.0, "N/m", "K_p per footpad (Table 4)", minimum=0.0),
+        parameter("slip_velocity", 1e-3, "m/s", "regularises the sign of Coulomb's friction", minimum=1e-7),
+        parameter("ground_slope", 0.0, "rad", "of the plane; at azimuth 0 it rises toward +Z of L", minimum=-1.2, maximum=1.2),
+        parameter("ground_azimuth", 0.0, "rad", "of the slope about L's x axis", minimum=-7.0, maximum=7.0),
+        parameter("ground_origin", (0.0, 0.0, 0.0), "m", "a point of the plane, frame L"),
+        parameter("footpad_radius", 0.47, "m", "of the circle of rim points", minimum=1e-3),
+        parameter("footpad_height", 0.10, "m", "base to ball joint (Table 2)", minimum=0.0),
+        parameter("longest_substep", 2.5e-4, "s", "of the integrator inside", minimum=1e-7),
+        input_("pad.position", (1.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
+        input_("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0),
+        input_("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
+        input_("pad.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0),
+        input_("pad.model_acceleration", (0.0, 0.0, 0.0), "m/s2", "a_f: of the ball joint without force, frame L", nominal=1.0),
+        input_("pad.model_mobility", (0.0,) * 9, "1/kg", "Y, by rows, frame L", nominal=0.04),
+        input_("pad.model_stiffness", (0.0,) * 9, "1/s2", "A_x, by rows, frame L", nominal=1e6),
+        input_("pad.model_damping", (0.0,) * 9, "1/s", "A_v, by rows, frame L", nominal=1e4),
+        input_("pad.model_base_velocity", (0.0, 0.0, 0.0), "m/s", "V_b, frame L", nominal=1.0),
+        input_("pad.model_base_acceleration", (0.0, 0.0, 0.0), "m/s2", "A_b, frame L", nominal=1.0),
+        input_("pad.model_inertia", (0.0, 0.0, 0.0), "kg.m2", "of the pad about its own axes; 0: it does not answer torques", nominal=1.0),
+        input_("pad.model_joint_damping", 0.0, "N.m.s/rad", "of the ball joint", nominal=100.0),
+        input_("pad.model_strut_rate", (0.0, 0.0, 0.0), "rad/s", "of the piston, frame L", nominal=1.0),
+        input_("pad.mismatch_velocity", (0.0, 0.0, 0.0), "m/s", "leg less prediction in the last pass, frame L", nominal=1e-3),
+        input_("pad.mismatch_angular_velocity", (0.0, 0.0, 0.0), "rad/s", "leg less prediction in the last pass, frame L", nominal=1e-2),
+        output("pad.force", (0.0, 0.0, 0.0), "N", "on the pad, frame L", nominal=1e4, mean=True, slope=True),
+        output("pad.torque", (0.0, 0.0, 0.0), "N.m", "on the pad about the ball joint, frame L", nominal=1e3, mean=True, slope=True),
+        output("pad.predicted_position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
+        output("pad.predicted_velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
+        output("pad.predicted_angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0),
+        output("penetration", 0.0, "m", "depth of the pad's centre below the surface", nominal=0.05),
+        output("gap", 0.0, "m", "height of the lowest point above the surface along L's x; negative in the soil", nominal=0.1),
+        output("skid", 0.0, "m", "slide of the pad's centre in the soil since first contact", nominal=0.1),
+        output("normal_force", 0.0, "N", "along the surface's normal", nominal=1e4),
+        output("pad.work", 0.0, "J", "done on the pad since the start", nominal=1e3),
+        output("contact", False, "", "whether any point is in the soil", boolean=True),
+        output("contact_time", -1.0, "s", "end of the interval of first contact, -1 before", nominal=1.0),
+        state("points", (0.0,) * (POINTS * COLUMNS), "per point: datum, slide, last place, last depth"),
+    )
+
+    def prepare(self) -> None:
+        share = 1.0 / POINTS
+        self.soil = Soil(
+            int(self.value("law")),
+            share * self.value("bearing_strength"),
+            self.value("compaction_exponent"),
+            share * self.value("damping"),
+            self.value("damping_activation_depth"),
+            self.value("rebound_band"),
+            self.value("residual_sink_rate"),
+            self.value("friction"),
+            share * self.value("plowing"),
+            self.value("slip_velocity"),
+        )
+        x, y, z = self["ground_origin"].tolist()
+        self.surface = inclined_plane(self.value("ground_slope"), self.value("ground_azimuth"), (x, y, z))
+        self.pad = Footpad(self.value("footpad_radius"), self.value("footpad_height"))
+        self.port = self.span("pad.position", "pad.angular_velocity")
+        self.outputs = (
+            self.span("pad.force", "pad.torque_slope"),
+            self.span("pad.predicted_position", "pad.predicted_angular_velocity"),
+            self.span("penetration", "pad.work"),
+            self["points"].reshape(POINTS, COLUMNS),
+        )
+        self.model = self.span("pad.model_acceleration", "pad.model_strut_rate")
+        self.shift = self.span("pad.mismatch_velocity", "pad.mismatch_angular_velocity")
+
+    def initialise(self) -> None:
+        depth = start_soil(self.soil, self.surface, self.pad, self.port, *self.outputs)
+        if depth > DEEP:
+            raise UnitError(
+                f"the pad starts {depth:.4g} m deep in the soil, expects at most {DEEP:g} m: raise the vehicle's position_start[1] or lower ground_origin[1]"
+            )
+        self.feel(self.start_time)
+
+    def advance(self, time: float, step: float) -> None:
+        done = advance_soil(
+            self.soil, self.surface, self.pad, self.value("longest_substep"), step, self.port, self.model, self.shift, *self.outputs
+        )
+        if not done:
+            raise UnitError(
+                f"the contact's equations did not converge over {step:g} s at a sink depth of {-self.value('gap'):.4g} m; "
+                "a shorter interval may do"
+            )
+        self.feel(time + step)
+
+    def feel(self, time: float) -> None:
+        """Contact signal and the time of the first contact."""
+        touching = self.value("gap") < 0.0
+        self["contact"] = float(touching)
+        if touching and self.value("contact_time") < 0.0:
+            self["contact_time"] = time

@@ -1,0 +1,131 @@
+"""VehicleBody: the lander's rigid body, to which legs, engine and further effects attach by wrenches."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..laws.rigid_body import Body, BodyLoad, BodyState, body_energy, body_rate, inertia_matrix, step_body, wrench_work
+from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation, scale, sub, yaw_pitch_roll
+from ..shell import Unit, input_, output, parameter
+
+PORTS = (*(f"leg{k}" for k in range(1, 9)), "engine", *(f"effect{k}" for k in range(1, 5)))
+LONGEST = 1e-3  # s, Runge-Kutta step: its error per step is below 1e-12 of the motion at rates of 1 rad/s
+WRENCH = 18  # numbers of one wrench port: force, slope, added, torque, slope, added
+
+
+class VehicleBody(Unit):
+    """Newton-Euler for the vehicle with its gear undeformed: Table 1 is the composite, and each leg's wrench is what differs from it.
+
+    m a = R Σf - m g x̂,   I ω' = Σκ - ω × I ω,   R from the quaternion, q' = ½ q ω
+
+    Every wrench is given in B about B's origin, which is the composite centre of mass. Attitude: R(B to L) = Rz(roll) Ry(pitch) Rx(yaw);
+    pitch is positive nose up, roll right side down, yaw nose left. Velocity at the start is given in B, as Table 5 does.
+    Outputs with mean and slope are those of the motion just made, so that a leg stepped afterwards moves its base exactly as the body did.
+    """
+
+    description = "Rigid body of the lander: six degrees of freedom under the wrenches of legs, engine and effects."
+    variables = (
+        parameter("mass", 7063.5, "kg", "whole vehicle, gear included (Table 1)", minimum=1.0),
+        parameter("inertia", (16492.0, 17409.0, 20800.0), "kg.m2", "Ixx, Iyy, Izz of the whole vehicle, frame B (Table 1)", minimum=1e-3),
+        parameter("inertia_products", (0.0, 0.0, 0.0), "kg.m2", "∫xy dm, ∫xz dm, ∫yz dm, frame B"),
+        parameter("gravity", 1.63, "m/s2", "along -x of L", minimum=0.0, maximum=100.0),
+        parameter("position_start", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L"),
+        parameter("velocity_start", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame B (Table 5)"),
+        parameter("yaw_start", 0.0, "rad", "about X, positive nose left", minimum=-3.2, maximum=3.2),
+        parameter("pitch_start", 0.0, "rad", "about Y, positive nose up", minimum=-1.5, maximum=1.5),
+        parameter("roll_start", 0.0, "rad", "about Z, positive right side down", minimum=-3.2, maximum=3.2),
+        parameter("rates_start", (0.0, 0.0, 0.0), "rad/s", "yaw (X), pitch (Y), roll (Z) rate, frame B"),
+        *(
+            record
+            for port in PORTS
+            for record in (
+                input_(f"{port}.force", (0.0, 0.0, 0.0), "N", "on the body, frame B", nominal=1e4, slope=True, added=True),
+                input_(
+                    f"{port}.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, slope=True, added=True
+                ),
+            )
+        ),
+        output("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
+        output("body.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "attitude (w, x, y, z), B to L", nominal=1.0),
+        output("body.velocity", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame L", nominal=1.0),
+        output("body.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame B", nominal=0.1),
+        output("body.acceleration", (0.0, 0.0, 0.0), "m/s2", "of the origin of B, frame L", nominal=1.0, mean=True, slope=True),
+        output("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, mean=True, slope=True),
+        *(output(f"attitude.{a}", 0.0, "rad", f"{a} angle, 321 sequence", nominal=1.0) for a in ("yaw", "pitch", "roll")),
+        *(output(f"rates.{a}", 0.0, "rad/s", f"{a} rate, frame B", nominal=0.1) for a in ("yaw", "pitch", "roll")),
+        output("energy.kinetic", 0.0, "J", "of the whole vehicle, gear undeformed", nominal=1e3),
+        output("energy.potential", 0.0, "J", "m g x, zero at the origin of L", nominal=1e3),
+        *(output(f"{port}.work", 0.0, "J", "done on the body through this port since the start", nominal=1e3) for port in PORTS),
+    )
+
+    def check(self) -> Iterable[str]:
+        x, y, z = self["inertia"]
+        for name, largest, rest in (("Ixx", x, y + z), ("Iyy", y, x + z), ("Izz", z, x + y)):
+            if largest > rest:
+                yield f"inertia: {name} is {largest:g} kg.m2, expects at most the sum of the other two, {rest:g} kg.m2"
+
+    def prepare(self) -> None:
+        inertia = inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"]))
+        self.body = Body(self.value("mass"), inertia, self.value("gravity"))
+
+    def initialise(self) -> None:
+        attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
+        velocity = apply(rotation(attitude), triple(self["velocity_start"]))
+        now = BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"]))
+        rate = body_rate(self.body, now, self.load(), 0.0)
+        self.show(now)
+        self["body.acceleration"] = self["body.acceleration_mean"] = rate.acceleration
+        self["body.angular_acceleration"] = self["body.angular_acceleration_mean"] = rate.spin_up
+
+    def state(self) -> BodyState:
+        """The body's state, which is what it shows."""
+        q = self["body.quaternion"].tolist()
+        return BodyState(
+            triple(self["body.position"]), (q[0], q[1], q[2], q[3]), triple(self["body.velocity"]), triple(self["body.angular_velocity"])
+        )
+
+    def wrenches(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+        """One row a port: force, slope, added, torque, slope, added."""
+        return self.span(f"{PORTS[0]}.force", f"{PORTS[-1]}.torque_added").reshape(len(PORTS), WRENCH)
+
+    def load(self) -> BodyLoad:
+        """Sum of all wrenches, sockets included."""
+        s = self.wrenches().sum(axis=0).tolist()
+        force, torque = (s[0] + s[6], s[1] + s[7], s[2] + s[8]), (s[9] + s[15], s[10] + s[16], s[11] + s[17])
+        return BodyLoad(force, torque, (s[3], s[4], s[5]), (s[12], s[13], s[14]))
+
+    def advance(self, time: float, step: float) -> None:
+        before, load = self.state(), self.load()
+        first = body_rate(self.body, before, load, 0.0)
+        now = step_body(self.body, before, load, step, LONGEST)
+        last = body_rate(self.body, now, load, step)
+        self.show(now)
+        self["body.acceleration"], self["body.angular_acceleration"] = last.acceleration, last.spin_up
+        self["body.acceleration_mean"] = scale(1.0 / step, sub(now.velocity, before.velocity))
+        self["body.angular_acceleration_mean"] = scale(1.0 / step, sub(now.rate, before.rate))
+        self["body.acceleration_slope"] = scale(1.0 / step, sub(last.acceleration, first.acceleration))
+        self["body.angular_acceleration_slope"] = scale(1.0 / step, sub(last.spin_up, first.spin_up))
+        for port, row in zip(PORTS, self.wrenches(), strict=True):
+            if row.any():
+                r = row.tolist()
+                force, torque = add(vector(r, 0), vector(r, 6)), add(vector(r, 9), vector(r, 15))
+                self[f"{port}.work"] += wrench_work(before, now, BodyLoad(force, torque, vector(r, 3), vector(r, 12)), step)
+
+    def show(self, now: BodyState) -> None:
+        """Fill what follows from the state."""
+        self["body.position"], self["body.quaternion"] = now.position, now.attitude
+        self["body.velocity"], self["body.angular_velocity"] = now.velocity, now.rate
+        self.span("attitude.yaw", "attitude.roll")[:] = yaw_pitch_roll(now.attitude)
+        self.span("rates.yaw", "rates.roll")[:] = now.rate
+        self.span("energy.kinetic", "energy.potential")[:] = body_energy(self.body, now)
+
+
+def triple(view: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Vector:
+    """A view of three numbers as a tuple."""
+    x, y, z = view.tolist()
+    return (x, y, z)
+
+
+def vector(row: list[float], i: int) -> Vector:
+    """Three numbers of a row as a tuple."""
+    return (row[i], row[i + 1], row[i + 2])
