@@ -21,11 +21,12 @@ def motion(title: str, channels: Channels, table: ResultsTable, contacts: Contac
         for axes, quantity, unit in zip(row, ("rates", "attitude"), ("deg/s", "deg"), strict=True):
             label = f"{axis} rate, {unit}" if quantity == "rates" else f"{axis}, {unit}"
             dress(axes, label, TIME if axis == "roll" else "")
-            axes.axhline(0.0, color=INK, linewidth=0.6, alpha=0.4)
+            if quantity == "rates":
+                axes.axhline(0.0, color=INK, linewidth=0.6, alpha=0.4)
             mark_contacts(axes, contacts, colours)
             column = channels.series(f"{table.body}.{quantity}.{axis}")
             if column is not None:
-                axes.plot(channels.times, column * DEGREES, color=INK, linewidth=1.3)
+                axes.plot(channels.times, column * DEGREES, color=INK, linewidth=1.1)
             widen(axes, 1.0)
     contact_legend(figure, contacts, colours, solid=False)
     return figure
@@ -44,7 +45,7 @@ def pads(title: str, channels: Channels, table: ResultsTable, contacts: Contacts
         for leg, names in table.legs.items():
             column = channels.series(f"{names.soil}.{variable}")
             if column is not None:
-                axes.plot(channels.times, column * scale, color=colours[leg], linewidth=1.3)
+                axes.plot(channels.times, column * scale, color=colours[leg], linewidth=1.1)
     contact_legend(figure, contacts, colours, solid=True)
     return figure
 
@@ -55,14 +56,14 @@ def struts(title: str, channels: Channels, table: ResultsTable, contacts: Contac
     grid = figure.subplots(3, 2, sharex=True)
     colours = leg_colours(list(contacts))
     for row, strut in zip(grid, ("primary", "right", "left"), strict=True):
-        name = strut if strut == "primary" else f"{strut} secondary"
+        name, sense = ("primary", "compression") if strut == "primary" else (f"{strut} secondary", "extension")
         for axes, quantity, unit, scale in zip(row, ("stroke", "load"), ("cm", "kN"), (100.0, 1e-3), strict=True):
-            dress(axes, f"{name} {quantity}, {unit}", TIME if strut == "left" else "")
+            dress(axes, f"{name} {quantity}, {unit}\n({sense} positive)", TIME if strut == "left" else "")
             mark_contacts(axes, contacts, colours)
             for leg, names in table.legs.items():
                 column = channels.series(f"{names.leg}.{strut}.{quantity}")
                 if column is not None:
-                    axes.plot(channels.times, column * scale, color=colours[leg], linewidth=1.3)
+                    axes.plot(channels.times, column * scale, color=colours[leg], linewidth=1.1)
             widen(axes, 1.0)
     contact_legend(figure, contacts, colours, solid=True)
     return figure

@@ -41,10 +41,10 @@ def intervals(title: str, ends: Array, sizes: Array, accepted: Array, contacts: 
     figure = new_figure(f"{title}: intervals of the master", 9.5, 4.0)
     axes = figure.subplots()
     taken = accepted.astype(bool)
-    axes.step(ends[taken], sizes[taken] * 1e3, where="pre", color="#0072B2", linewidth=1.0, label=f"{taken.sum()} taken")
+    axes.plot(ends[taken], sizes[taken] * 1e3, ".", color="#0072B2", markersize=2.5, label=f"{taken.sum()} taken")
     if not taken.all():
         label = f"{(~taken).sum()} refused, repeated shorter"
-        axes.plot(ends[~taken], sizes[~taken] * 1e3, "x", color="#D55E00", markersize=5, label=label)
+        axes.plot(ends[~taken], sizes[~taken] * 1e3, "x", color="#D55E00", markersize=3.5, markeredgewidth=0.8, label=label)
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -52,7 +52,7 @@ def intervals(title: str, ends: Array, sizes: Array, accepted: Array, contacts: 
     dress(axes, "interval, ms", TIME)
     colours = leg_colours(list(contacts))
     mark_contacts(axes, contacts, colours)
-    axes.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0)
+    axes.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, markerscale=2.0)
     contact_legend(figure, contacts, colours, solid=False)
     return figure
 
