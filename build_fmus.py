@@ -3,6 +3,8 @@
     python build_fmus.py                      all units, into build/fmus
     python build_fmus.py GearLeg --out DIR    some of them, elsewhere
 
+    python build_fmus.py --reference RateSensor   run its reference experiment anew and keep the result in fmus/reference
+
 After building, each FMU is run for one step, so that numba's compiled code is in the user's cache (--no-warm leaves
 that out). The same sources give the same bytes.
 """
@@ -32,6 +34,17 @@ def pack(file: str, folder: Path) -> None:
     from lander.units import unit_in
 
     print(packed(unit_in(file), folder))
+
+
+def refer(file: str) -> None:
+    """Write a unit's reference experiment; a unit without stimulus has none."""
+    from lander.shell.reference import FOLDER, reference_text
+    from lander.units import unit_in
+
+    unit = unit_in(file)
+    if unit.stimulus(unit.experiment[0]):
+        FOLDER.mkdir(exist_ok=True)
+        (FOLDER / f"{unit.__name__}.csv").write_text(reference_text(unit), "utf-8")
 
 
 def warm(fmu: Path) -> None:
@@ -84,10 +97,11 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="units to build; all without")
     parser.add_argument("--out", type=Path, default=FOLDER, help="where to (default build/fmus)")
     parser.add_argument("--no-warm", action="store_true", help="leave the compiled code to the first run")
-    parser.add_argument("--job", choices=("pack", "warm"), help=argparse.SUPPRESS)
+    parser.add_argument("--reference", action="store_true", help="write the reference experiments anew")
+    parser.add_argument("--job", choices=("pack", "refer", "warm"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.job:
-        (pack(options.names[0], options.out) if options.job == "pack" else warm(Path(options.names[0])))
+        {"pack": lambda it: pack(it, options.out), "refer": refer, "warm": lambda it: warm(Path(it))}[options.job](options.names[0])
         return 0
     known = files_by_name()
     for name in options.names:
@@ -95,6 +109,12 @@ def main() -> int:
             print(f"{name}: no such unit; there are {', '.join(known.values())}")
             return 2
     chosen = [known[name.lower().replace("_", "")] for name in options.names] or list(known.values())
+    if options.reference:
+        for file in chosen:
+            good, line = run_alone("refer", file, FOLDER, plain=False)
+            if not good:
+                print(f"{file}: no reference: {line}")
+                return 1
     results = [build(file, options.out.resolve(), not options.no_warm) for file in chosen]
     return 0 if all(results) else 1
 

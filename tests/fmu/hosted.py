@@ -64,7 +64,7 @@ class Hosted:
 
     def __setitem__(self, name: str, value: float) -> None:
         variable = self.variables[name]
-        getattr(self.slave, f"set{variable.type}")([variable.valueReference], [value])
+        getattr(self.slave, f"set{variable.type}")([variable.valueReference], [value if variable.type == "Real" else int(value)])
 
     def everything(self) -> list[float]:
         """All Real variables, for comparison to the last bit."""

@@ -43,7 +43,7 @@ def model_description(unit: "type[Unit]", guid: str) -> Element:
         "name": "message", "valueReference": str(unit.layout.size), "description": MESSAGE,
         "causality": "local", "variability": "discrete", "initial": "calculated"})
     SubElement(message, "String")
-    root.append(model_structure(unit.layout))
+    root.append(model_structure(unit.layout, unit.initially))
     return root
 
 
@@ -98,7 +98,7 @@ def number(value: float, kind: str) -> str:
     return str(int(value)) if kind == "Integer" else repr(float(value))
 
 
-def model_structure(layout: Layout) -> Element:
+def model_structure(layout: Layout, initial_inputs: tuple[str, ...]) -> Element:
     """Outputs with what they depend on at one communication point, and what their initial values depend on.
 
     Where nothing feeds through, the list is empty and is written: without it importers assume dependence on everything
@@ -112,7 +112,7 @@ def model_structure(layout: Layout) -> Element:
         unknowns = SubElement(structure, name)
         for scalar in outputs:
             record = scalar.record
-            initially = (*parameters, *record.depends) if record.initially is None else record.initially
+            initially = (*parameters, *initial_inputs, *record.depends) if record.initially is None else record.initially
             known = record.depends if name == "Outputs" else initially
             SubElement(unknowns, "Unknown", {"index": str(index[scalar.slot]), "dependencies": indices(layout, index, record.name, known)})
     return structure

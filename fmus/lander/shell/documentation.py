@@ -14,7 +14,8 @@ STYLE = "body{font-family:sans-serif;max-width:70em;margin:2em auto}td,th{text-a
 PROMISES = """Every quantity is in SI. An input holds at the start of the coming interval, with x_slope it runs linearly through it;
 an output holds at its end, x_mean and x_slope are its mean and slope over it. The FMU state is saved and restored to the last bit.
 A value that is not a number or out of its bounds is named in the log and in the String variable message; a parameter's is
-found at the end of initialisation, and each doStep after that is discarded."""
+found at the end of initialisation, and each doStep after that is discarded. reference.csv, where it is, holds an experiment
+with its inputs and results: to be repeated with the default experiment's steps."""
 
 
 def documentation(unit: "type[Unit]") -> str:

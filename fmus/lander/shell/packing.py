@@ -11,6 +11,7 @@ import pythonfmu
 from .description import model_description
 from .documentation import documentation
 from .main_script import source_digest
+from .reference import FOLDER
 from .terminals import terminals_and_icons
 from .unit import Unit
 
@@ -32,6 +33,8 @@ def packed(unit: type[Unit], folder: Path) -> Path:
         **python_files(PYTHONFMU, "resources/pythonfmu", deep=False),
         **binaries(name),
     }
+    if (FOLDER / f"{name}.csv").exists():
+        entries["documentation/reference.csv"] = (FOLDER / f"{name}.csv").read_bytes()
     entries = {"modelDescription.xml": xml(model_description(unit, guid_of(entries))), **entries}
     folder.mkdir(parents=True, exist_ok=True)
     path, unfinished = folder / f"{name}.fmu", folder / f".{name}.{uuid.uuid4().hex}"

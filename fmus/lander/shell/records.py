@@ -28,7 +28,7 @@ class Record:
     maximum: float | None = None
     nominal: float | None = None
     depends: tuple[str, ...] = ()           # inputs that an output at a communication point depends on at that same point
-    initially: tuple[str, ...] | None = None  # parameters and inputs its initial value depends on; None: all parameters, depends
+    initially: tuple[str, ...] | None = None  # what its initial value depends on; None: all parameters, the unit's `initially`, depends
     companions: tuple[str, ...] = ()
 
     def expanded(self) -> list["Record"]:

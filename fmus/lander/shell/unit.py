@@ -5,7 +5,7 @@ bit. Nothing here raises through the FMI boundary: pythonfmu's binary answers an
 kills the process. An error is logged in one line, kept in the String `message`, and answered with fmi2Discard at doStep.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import isfinite, nan
 from typing import Any, ClassVar
 from xml.etree.ElementTree import Element
@@ -16,7 +16,7 @@ from pythonfmu.fmi2slave import Fmi2Slave
 
 from .bounds import Floats, first_outside
 from .layout import Checked, Layout
-from .records import Record
+from .records import Record, Start
 
 PHASE, STALE, START_TIME = -3, -2, -1                     # slots of the shell's own states
 SETTING, STEPPING, FAILED = 0.0, 1.0, 2.0                 # phases: before the end of initialisation, after it, after it failed
@@ -46,7 +46,9 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     description: ClassVar[str] = ""
     variables: ClassVar[tuple[Record, ...]] = ()
+    initially: ClassVar[tuple[str, ...]] = ()        # inputs that initial values of outputs depend on, unless an output says otherwise
     experiment: ClassVar[tuple[float, float, float]] = (0.0, 1.0, 1e-3)    # start, stop, step of the default experiment
+    reference_parameters: ClassVar[tuple[tuple[str, Start], ...]] = ()     # what the reference experiment changes
     layout: ClassVar[Layout] = Layout(())
 
     def __init_subclass__(cls) -> None:
@@ -75,6 +77,11 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     def advance(self, time: float, step: float) -> None:
         """Take the state from time to time + step and fill the outputs; raise UnitError where that is impossible."""
+
+    @classmethod
+    def stimulus(cls, time: float) -> Mapping[str, Start]:
+        """The inputs of the reference experiment over the interval that begins at a time; always the same names."""
+        return {}
 
     # What a unit uses.
 

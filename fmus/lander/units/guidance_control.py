@@ -48,6 +48,13 @@ class GuidanceControl(Unit):
         state("touched", 0.0),
     )
 
+    experiment = (0.0, 1.0, 0.02)
+    reference_parameters = (("thrust_before_contact", 12000.0), ("thrust_start", 12000.0), ("decay_time", 0.5))
+
+    @classmethod
+    def stimulus(cls, time: float) -> dict[str, float]:
+        return {"contact2": float(time >= 0.25), "contact4": float(time >= 0.4)}
+
     def prepare(self) -> None:
         self.corners: Any = thrust_points(self.value("thrust_start"), self.value("decay_time"), self["table_time"], self["table_thrust"],
                                           int(self.value("table_points")))
@@ -75,5 +82,5 @@ class GuidanceControl(Unit):
         y, z = self["thrust_offset"]
         for suffix, value in (("", end), ("_mean", mean), ("_slope", slope)):
             self["engine.force" + suffix] = (value, 0.0, 0.0)
-            self["engine.torque" + suffix] = (0.0, z * value, -y * value)
+            self["engine.torque" + suffix] = (0.0, z * value, 0.0 - y * value)
         self["engine.thrust"], self["engine.on"] = end, float(end > 0.0)

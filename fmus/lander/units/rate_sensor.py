@@ -33,6 +33,15 @@ class RateSensor(Unit):
         state("samples", 0.0, "samples taken since the start; counted, not summed"),
     )
 
+    experiment = (0.0, 1.0, 0.01)
+    reference_parameters = (("time_constant", 0.05), ("sample_interval", 0.025), ("quantum", 0.001), ("scale", 1.02),
+                            ("bias", (0.0, 0.01, 0.0)))
+
+    @classmethod
+    def stimulus(cls, time: float) -> dict[str, float]:
+        slopes = {"yaw": 0.3, "pitch": -0.2, "roll": 0.1}
+        return {f"rates.{a}": k * time for a, k in slopes.items()} | {f"rates.{a}_slope": k for a, k in slopes.items()}
+
     def initialise(self) -> None:
         self["lagged"] = [self.value(f"rates.{axis}") for axis in AXES]
         self["held"] = self["lagged"]
