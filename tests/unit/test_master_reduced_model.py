@@ -1,10 +1,10 @@
 """Verifies: the reduced interface model carries a cut that is too stiff for explicit coupling.
 
 Setup: one dimension. A mass of 1233 kg on a strut (1e6 N/m, 1e4 N s/m) with a pad of 11 kg, 10 mm above a soil that pushes with
-3e5 N/m · depth + 7e4 N s/m · rate, never pulling; both at 1 m/s down. Cut between pad and soil, where explicit coupling is stable up to
-2m/C = 0.3 ms. Against the same equations in one piece.
-Tolerance: 1e-3 of the peak penetration at an interval of at most 2 ms; the scheme in one pass, or with the model's answer to force left out,
-misses it by far (asserted), so it can fail.
+3e5 N/m · depth · (1 + 5 s/m · rate), never pulling; both at 1 m/s down. Cut between pad and soil, where explicit coupling is stable up to
+2m/C = 0.3 ms at 50 mm depth. Against the same equations in one piece.
+Tolerance: 1e-4 of the peak penetration at intervals of 2 ms (measured: 3e-5). A model that misstates the strut by half, as the linearisation
+of a nonlinear leg would, is where estimate, rejection and second pass must show (asserted), so the tests can fail.
 """
 
 from typing import Any
@@ -18,14 +18,14 @@ from orchestrator.master.settings import MasterSettings
 from orchestrator.master.system import Link, PortPair, System
 
 M, PAD, K, C, G = 1233.0, 11.0, 1e6, 1e4, 1.62
-KS, CS = 3e5, 7e4
+KS, RATE = 3e5, 5.0
 START = (1.01, -1.0, 0.01, -1.0)      # mass: height, velocity; pad: height, velocity
 STOP = 0.1
 MODEL = ("acceleration", "mobility", "stiffness", "damping", "base_velocity", "base_acceleration")
 
 
 def soil_force(x: float, v: float) -> float:
-    return max(0.0, -KS * x - CS * v) if x < 0.0 else 0.0
+    return max(0.0, -KS * x * (1.0 - RATE * v)) if x < 0.0 else 0.0
 
 
 def strut(s: Any) -> float:
@@ -48,10 +48,12 @@ def runge_kutta(rate: Any, s: Any, h: float, count: int) -> Any:
     return s
 
 
-def leg() -> FunctionUnit:
+def leg(share: float = 1.0) -> FunctionUnit:
+    """`share` of the strut's stiffness and damping is what the model tells."""
+
     def outputs(s: Any) -> dict:
         f = strut(s)
-        values = (-f / PAD - G, 1 / PAD, -K / PAD, -C / PAD, s[1], f / M - G)
+        values = (-f / PAD - G, 1 / PAD, -share * K / PAD, -share * C / PAD, s[1], f / M - G)
         return {"pad.position[1]": s[2], "pad.velocity[1]": s[3]} | {f"pad.model_{n}": v for n, v in zip(MODEL, values, strict=True)}
 
     def advance(state: dict, u: dict, t: float, h: float) -> dict:
@@ -94,10 +96,10 @@ def soil(mobility: float = 1.0) -> FunctionUnit:
     return FunctionUnit("soil", inputs, {}, observe, advance)
 
 
-def coupled(settings: MasterSettings, **options: float) -> Master:
+def coupled(settings: MasterSettings, mobility: float = 1.0, share: float = 1.0) -> Master:
     members = ["position[1]", "velocity[1]", *(f"model_{name}" for name in MODEL)]
     links = [Link(1, f"pad.{m}", 0, f"pad.{m}") for m in members] + [Link(0, "pad.force[1]", 1, "pad.force[1]")]
-    system = System([soil(**options), leg()], links, [PortPair(0, "pad", 1, "pad")], recorded=[[], ["pad.position[1]"]])
+    system = System([soil(mobility), leg(share)], links, [PortPair(0, "pad", 1, "pad")], recorded=[[], ["pad.position[1]"]])
     return prepared(system, settings, stop=STOP)
 
 
@@ -112,46 +114,55 @@ def error_of(master: Master) -> float:
     return worst / depth
 
 
-def test_two_passes_with_the_model_hold_a_cut_seven_times_too_stiff_for_explicit_steps() -> None:
+def test_the_model_holds_a_cut_seven_times_too_stiff_for_explicit_steps() -> None:
     master = coupled(MasterSettings(max_interval=2e-3, min_interval=5e-5, tolerance=1e-5))
     master.run()
-    accepted = [row for row in master.log if row.accepted]
-    assert error_of(master) < 1e-3
-    assert STOP / len(accepted) > 3e-4
+    assert len(master.log) == 50
+    assert error_of(master) < 1e-4
     assert master.unresolved == 0
-    assert any(row.limit == "soil.pad" for row in master.log)
 
 
-def test_the_estimate_rejects_at_touchdown() -> None:
-    master = coupled(MasterSettings(max_interval=2e-3, min_interval=5e-5, tolerance=1e-6))
+def test_a_misstated_model_shortens_the_steps_by_rejection_and_the_answer_stays_right() -> None:
+    master = coupled(MasterSettings(max_interval=2e-3, min_interval=2e-5, tolerance=1e-7), share=0.5)
     master.run()
     rejected = [row for row in master.log if not row.accepted]
     assert rejected
-    assert all(row.estimate > 1e-6 for row in rejected)
+    assert all(row.estimate > 1e-7 and row.limit == "soil.pad" for row in rejected)
+    assert error_of(master) < 1e-3
+    assert master.unresolved == 0
 
 
-def test_without_the_answer_to_force_the_same_cut_is_not_resolved_and_says_so() -> None:
-    master = coupled(MasterSettings(max_interval=2e-3, min_interval=5e-4, tolerance=1e-5), mobility=0.0)
+def test_without_the_answer_to_force_the_cut_is_not_resolved_and_says_so() -> None:
+    master = coupled(MasterSettings(max_interval=2e-3, min_interval=1e-3, tolerance=1e-5), mobility=0.0)
     master.run()
     assert master.unresolved > 0.05 * sum(row.accepted for row in master.log)
 
 
-def test_the_second_pass_pays() -> None:
+def test_the_second_pass_pays_when_the_model_is_not_exact() -> None:
     errors = []
     for passes in (1, 2):
-        master = coupled(MasterSettings(max_interval=1e-3, min_interval=1e-3, tolerance=1e9, passes=passes))
+        master = coupled(MasterSettings(max_interval=1e-3, min_interval=1e-3, tolerance=1e9, passes=passes), share=0.5)
         master.run()
         errors.append(error_of(master))
-    assert errors[1] < 0.5 * errors[0]
+    assert errors[1] < 0.4 * errors[0]
 
 
 def test_the_mismatch_is_zero_in_the_first_pass_and_what_was_missed_in_the_second() -> None:
-    master = coupled(MasterSettings(max_interval=1e-3, min_interval=1e-3, tolerance=1e9))
-    seen: list[float] = []
+    master = coupled(MasterSettings(max_interval=1e-3, min_interval=1e-3, tolerance=1e9), share=0.5)
+    told: list[float] = []
     unit = master.system.slaves[0]
     inner = unit._advance
-    unit._advance = lambda s, u, t, h: (seen.append(u["pad.mismatch_velocity[1]"]), inner(s, u, t, h))[1]
-    master._advance(1_000_000)
-    assert seen[0] == 0.0
-    assert seen[1] != 0.0
-    assert seen[1] == pytest.approx(0.0, abs=1e-3)
+    unit._advance = lambda s, u, t, h: (told.append(u["pad.mismatch_velocity[1]"]), inner(s, u, t, h))[1]
+    for _ in range(15):                   # past touchdown at 10 ms
+        master._advance(1_000_000)
+    assert told[0::2] == [0.0] * 15
+    assert 0.0 < abs(told[-1]) < 0.1
+
+
+def test_the_two_sides_of_the_cut_agree_better_after_the_second_pass() -> None:
+    largest = []
+    for passes in (1, 2, 3):
+        master = coupled(MasterSettings(max_interval=1e-3, min_interval=1e-3, tolerance=1e9, passes=passes), share=0.5)
+        master.run()
+        largest.append(max(row.estimate for row in master.log))
+    assert largest[0] > 4.0 * largest[1] > 16.0 * largest[2]
