@@ -151,7 +151,7 @@ def advance_leg(
         return False
     write_state(s, now, last.motion.acceleration)
     write_mount(leg, last, course.impulse, course.angular_impulse, step, mount)
-    ledger[MOUNT_WORK] += course.mount_work
+    ledger[MOUNT_WORK] -= course.mount_work
     ledger[PAD_WORK] += course.pad_work
     ledger[DISSIPATED] += course.dissipated
     base = base_at(motion, step)

@@ -118,6 +118,6 @@ def advance_soil(
         return False
     write_wrench(course, end, step, wrench)
     write_predicted(at, at.rate, predicted)
-    report[WORK] += course.work
+    report[WORK] -= course.work
     write_report(surface, pad, at, end, memory, report)
     return True

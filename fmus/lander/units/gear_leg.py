@@ -95,7 +95,7 @@ class GearLeg(Unit):
         output("right.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1),
         output("left.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1),
         output("bottomed", False, "", "whether any strut is beyond its stroke limit", boolean=True),
-        output("mount.work", 0.0, "J", "done on the body since the start", nominal=1e3),
+        output("mount.work", 0.0, "J", "done on the leg by the body since the start", nominal=1e3),
         output("pad.work", 0.0, "J", "done on the leg by the pad's wrench since the start", nominal=1e3),
         output("energy.kinetic", 0.0, "J", "less that of the rigid leg, which the body carries", nominal=1e3),
         output("energy.potential", 0.0, "J", "less that of the rigid leg", nominal=1e3),

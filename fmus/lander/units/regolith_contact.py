@@ -64,7 +64,7 @@ class RegolithContact(Unit):
         output("gap", 0.0, "m", "height of the lowest point above the surface along L's x; negative in the soil", nominal=0.1),
         output("skid", 0.0, "m", "slide of the pad's centre in the soil since first contact", nominal=0.1),
         output("normal_force", 0.0, "N", "along the surface's normal", nominal=1e4),
-        output("pad.work", 0.0, "J", "done on the pad since the start", nominal=1e3),
+        output("pad.work", 0.0, "J", "done on the soil by the pad since the start", nominal=1e3),
         output("contact", False, "", "whether any point is in the soil", boolean=True),
         output("contact_time", -1.0, "s", "end of the interval of first contact, -1 before", nominal=1.0),
         state("points", (0.0,) * (POINTS * COLUMNS), "per point: datum, slide, last place, last depth"),
