@@ -30,7 +30,7 @@ def terminal_table(summary: Summary) -> RenderableType:
 def _headline(summary: Summary) -> Text:
     words = [("complete", "green")] if summary["complete"] else [("NOT COMPLETE", "red")]
     words.append(("trusted", "green") if summary["trusted"] else ("NOT TRUSTED", "red"))
-    if "stable" in summary:
+    if "stable" in summary and summary["complete"]:
         verdicts = {True: ("stands", "green"), False: ("DOES NOT STAND", "red"), None: ("stability unknown", "yellow")}
         words.append(verdicts[summary["stable"]])
     line = Text(summary["title"], style="bold")

@@ -96,6 +96,12 @@ def test_the_screen_shows_a_failed_run_and_why(tmp_path):
     assert "body.fmu: refused" in text
 
 
+def test_a_run_that_was_cut_short_is_not_called_standing(tmp_path):
+    text = printed(write(landing(50, complete=False, trusted=False), tmp_path))
+    assert "NOT COMPLETE" in text
+    assert "stand" not in text
+
+
 def test_the_screen_shows_reported_numbers(tmp_path):
     text = printed(write(drop(), tmp_path))
     assert "0.2838 m" in text
