@@ -95,3 +95,16 @@ def test_a_strut_that_reached_its_limit_once_has_bottomed():
     times = landing().times
     summary, _ = summed_up(**{"leg+Z.bottomed": (times > 0.1) & (times < 0.2), "leg-Z.bottomed": times < 0.0})
     assert summary["bottomed"] == {"+Z": True, "-Z": False, "+Y": None, "-Y": None}
+
+
+def test_a_vehicle_in_one_fmu_is_summed_up_like_one_in_many():
+    result, apart = landing(), summed_up()[0]
+    numbers = {leg: i for i, leg in enumerate(LEGS, 1)}
+    renamed = {}
+    for name, column in result.columns.items():
+        unit, _, variable = name.partition(".")
+        leg = unit[-2:]
+        renamed["lander." + (variable if unit == "body" else f"{unit[:-2]}{numbers[leg]}.{variable}")] = column
+    legs = {leg: {"leg": f"lander.leg{i}", "soil": f"lander.soil{i}"} for leg, i in numbers.items()}
+    together = touchdown(Channels(result.times, renamed), ResultsTable.model_validate({"body": "lander", "legs": legs}))
+    assert together == apart
