@@ -10,12 +10,12 @@ Array = NDArray[np.float64]
 
 
 @jit
-def solve_in_place(a: Array, b: Array) -> bool:
+def solve_many(a: Array, b: Array) -> bool:
     """Solve a x = b by elimination with partial pivoting; x replaces b, a is destroyed. False where a is singular.
 
-    a: (n, n), b: (n,)
+    a: (n, n), b: (n, m)
     """
-    n = b.shape[0]
+    n, m = b.shape
     for k in range(n):
         pivot = k
         for i in range(k + 1, n):
@@ -26,17 +26,20 @@ def solve_in_place(a: Array, b: Array) -> bool:
         if pivot != k:
             for j in range(k, n):
                 a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
-            b[k], b[pivot] = b[pivot], b[k]
+            for j in range(m):
+                b[k, j], b[pivot, j] = b[pivot, j], b[k, j]
         for i in range(k + 1, n):
             factor = a[i, k] / a[k, k]
             if factor != 0.0:
                 for j in range(k + 1, n):
                     a[i, j] -= factor * a[k, j]
-                b[i] -= factor * b[k]
+                for j in range(m):
+                    b[i, j] -= factor * b[k, j]
     for k in range(n - 1, -1, -1):
-        for j in range(k + 1, n):
-            b[k] -= a[k, j] * b[j]
-        b[k] /= a[k, k]
+        for c in range(m):
+            for j in range(k + 1, n):
+                b[k, c] -= a[k, j] * b[j, c]
+            b[k, c] /= a[k, k]
     return True
 
 

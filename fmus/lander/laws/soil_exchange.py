@@ -109,15 +109,15 @@ def advance_soil(
     predicted: Array,
     report: Array,
     memory: Array,
-) -> bool:
-    """Take pad and soil over `step` seconds and fill the outputs; False where Newton gave up."""
+) -> tuple[bool, float]:
+    """Take pad and soil over `step` seconds and fill the outputs; False where Newton gave up. Also the instant of contact, s (-1: none)."""
     start = read_start(port)
     mismatch = Shift(vector(shift, 0), vector(shift, 3))
     at, _, end, course, ok = step_soil(soil, surface, pad, read_model(model), start, mismatch, memory, step, longest)
     if not ok:
-        return False
+        return False, -1.0
     write_wrench(course, end, step, wrench)
     write_predicted(at, at.rate, predicted)
     report[WORK] -= course.work
     write_report(surface, pad, at, end, memory, report)
-    return True
+    return True, course.touch

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .compiled import jit
-from .footpad import Footpad, PadMotion, PadTangents, Wrench, pad_power, pad_wrench, remember
+from .footpad import Footpad, PadMotion, PadTangents, Wrench, deepest, pad_power, pad_wrench, remember
 from .leg_stepping import GAMMA, NEWTON_LIMIT, SMALLEST_SHARE, VELOCITY_TOLERANCE
-from .linear import put, solve_in_place
+from .linear import put, solve_many
 from .soil import Soil
 from .surface import Surface
 from .vectors import (
@@ -85,6 +85,7 @@ class SoilCourse(NamedTuple):
     moment_impulse: Vector  # N s2
     moment_angular_impulse: Vector
     work: float  # J, done on the pad
+    touch: float  # s since the start, of the first point entering the soil; -1: none
 
 
 class Travel(NamedTuple):
@@ -167,6 +168,7 @@ def soil_stage(
 ) -> tuple[Travel, Vector, Vector, Wrench, PadMotion, bool]:
     """One stage at time t: (a, b) with v = v0 + h a(v, ...), Newton with backtracking. before: explicit part; h is γ times the substep."""
     best, share, ok = 1e300, 1.0, False
+    da, db = ZERO, ZERO
     travel = before
     at = seen(start, travel, shift, t, interval)
     wrench = Wrench(ZERO, ZERO)
@@ -183,15 +185,15 @@ def soil_stage(
         size = dot(r, r) + GYRATION * GYRATION * dot(q, q)
         if size > best and share > 1e-4:
             share *= 0.5
-            a, b = axpy(-share, (step[0], step[1], step[2]), a), axpy(-share, (step[3], step[4], step[5]), b)
+            a, b = axpy(-share, da, a), axpy(-share, db, b)
             continue
         best, share = size, 1.0
         newton_matrix(model, tangents, flexible, h, matrix)
         for j in range(3):
-            step[j], step[3 + j] = r[j], q[j]
-        if not solve_in_place(matrix, step):
+            step[j, 0], step[3 + j, 0] = r[j], q[j]
+        if not solve_many(matrix, step):
             break
-        da, db = (step[0], step[1], step[2]), (step[3], step[4], step[5])
+        da, db = (step[0, 0], step[1, 0], step[2, 0]), (step[3, 0], step[4, 0], step[5, 0])
         a, b = add(a, da), add(b, db)
         ok = h * h * (dot(da, da) + GYRATION * GYRATION * dot(db, db)) < VELOCITY_TOLERANCE * VELOCITY_TOLERANCE
     return travel, a, b, wrench, at, ok
@@ -206,7 +208,14 @@ def add_stage(c: SoilCourse, wrench: Wrench, at: PadMotion, t: float, h: float) 
         axpy(h * t, wrench.force, c.moment_impulse),
         axpy(h * t, wrench.torque, c.moment_angular_impulse),
         c.work + h * pad_power(wrench, at),
+        c.touch,
     )
+
+
+@jit
+def touched(c: SoilCourse, t: float) -> SoilCourse:
+    """The course with the instant of contact."""
+    return SoilCourse(c.impulse, c.angular_impulse, c.moment_impulse, c.moment_angular_impulse, c.work, t)
 
 
 @jit
@@ -225,11 +234,11 @@ def step_soil(
 
     Returns the predicted pad at the end, its attitude, the wrench there, the integrals, and whether Newton always converged.
     """
-    matrix, step = np.zeros((6, 6)), np.zeros(6)
+    matrix, step = np.zeros((6, 6)), np.zeros((6, 1))
     full = interval / ceil(interval / longest - 1e-9)
     t, h = 0.0, full
     now = Travel(ZERO, ZERO, start.velocity, start.rate)
-    course = SoilCourse(ZERO, ZERO, ZERO, ZERO, 0.0)
+    course = SoilCourse(ZERO, ZERO, ZERO, ZERO, 0.0, -1.0)
     a, b = ZERO, ZERO
     at = seen(start, now, shift, 0.0, interval)
     wrench, _ = pad_wrench(soil, surface, pad, at, memory)
@@ -253,7 +262,10 @@ def step_soil(
             continue
         course = add_stage(add_stage(course, one[3], one[4], t + g, rest), two[3], two[4], t + h, g)
         now, a, b, wrench, at = two[0], two[1], two[2], two[3], two[4]
+        above = deepest(memory)
         remember(soil, surface, pad, at, memory)
+        if course.touch < 0.0 and above <= 0.0 < deepest(memory):
+            course = touched(course, t + h * above / (above - deepest(memory)))
         t += h
         h = min(full, 2.0 * h)
     return at, attitude_of(start, now, shift, interval, interval), wrench, course, True

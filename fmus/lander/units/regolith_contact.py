@@ -66,7 +66,7 @@ class RegolithContact(Unit):
         output("normal_force", 0.0, "N", "along the surface's normal", nominal=1e4),
         output("pad.work", 0.0, "J", "done on the soil by the pad since the start", nominal=1e3),
         output("contact", False, "", "whether any point is in the soil", boolean=True),
-        output("contact_time", -1.0, "s", "end of the interval of first contact, -1 before", nominal=1.0),
+        output("contact_time", -1.0, "s", "of first contact, -1 before", nominal=1.0),
         state("points", (0.0,) * (POINTS * COLUMNS), "per point: datum, slide, last place, last depth"),
     )
 
@@ -106,7 +106,7 @@ class RegolithContact(Unit):
         self.feel(self.start_time)
 
     def advance(self, time: float, step: float) -> None:
-        done = advance_soil(
+        done, touch = advance_soil(
             self.soil, self.surface, self.pad, self.value("longest_substep"), step, self.port, self.model, self.shift, *self.outputs
         )
         if not done:
@@ -114,7 +114,7 @@ class RegolithContact(Unit):
                 f"the contact's equations did not converge over {step:g} s at a sink depth of {-self.value('gap'):.4g} m; "
                 "a shorter interval may do"
             )
-        self.feel(time + step)
+        self.feel(time + max(touch, 0.0))
 
     def feel(self, time: float) -> None:
         """Contact signal and the time of the first contact."""

@@ -1,0 +1,234 @@
+"""Adaptive integration of the twin: SDIRK2 with the local error from the course of the accelerations, rejection, memories set once a step."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .blocks import put_quaternion, put_vector, quaternion, vector
+from .compiled import jit
+from .footpad import PadMotion, deepest, remember, start_memory
+from .leg import Crush, crushed
+from .leg_stepping import GAMMA, start_state
+from .rigid_body import BodyState
+from .twin import CRUSH, LEG_COLUMNS, P, Q, QX, V, VX, W, WX, X, BODY_COLUMNS, Engine, Flight, Vehicle, scratch, stage
+from .vectors import add, apply, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation
+
+Array = NDArray[np.float64]
+ERROR_CONSTANT = 0.0404  # of SDIRK2: 3 γ² - 2 γ³ - 1/6
+SMALLEST = 1e-9  # s
+ENGINE, SOIL, STRUTS, BALL = range(4)  # columns of the powers; of the ledger: the body's row 0, then a row a leg
+
+
+class Settings(NamedTuple):
+    """How finely to integrate."""
+
+    tolerance: float  # local error of any pad's or the body's velocity per step, m/s
+    longest: float  # s
+    first: float  # step to try first, s
+
+
+class Progress(NamedTuple):
+    """What an interval took."""
+
+    ok: bool
+    next_step: float  # s
+    steps: int
+    rejected: int
+
+
+@jit
+def copied(f: Flight) -> Flight:
+    """A state of its own."""
+    return Flight(f.body.copy(), f.legs.copy(), f.memory.copy())
+
+
+@jit
+def explicit_part(vehicle: Vehicle, f: Flight, rest: float, one: Array, mid: Flight, turns: Array) -> Flight:
+    """State plus `rest` (s) times the first stage's derivative; `turns` gets the rotation vectors. rest = 0: the state itself."""
+    n = len(vehicle.legs)
+    out = copied(f)
+    turns[:, :] = 0.0
+    if rest == 0.0:
+        return out
+    g = vehicle.body.gravity
+    r = rotation(quaternion(mid.body, QX))
+    spin_body = apply_transposed(r, vector(one[0], 3))
+    for j in range(3):
+        out.body[X + j] += rest * mid.body[VX + j]
+        out.body[VX + j] += rest * (one[0, j] - (g if j == 0 else 0.0))
+        out.body[WX + j] += rest * spin_body[j]
+        turns[0, j] = rest * mid.body[WX + j]
+    for i in range(n):
+        a = apply_transposed(r, vector(one[1 + i], 0))
+        for j in range(3):
+            out.legs[i, P + j] += rest * mid.legs[i, V + j]
+            out.legs[i, V + j] += rest * a[j]
+            out.legs[i, W + j] += rest * one[1 + i, 3 + j]
+            turns[1 + i, j] = rest * mid.legs[i, W + j]
+    return out
+
+
+@jit
+def stage_state(vehicle: Vehicle, start: Flight, explicit: Flight, turns: Array, a: Array, h: float) -> Flight:
+    """State at a solved stage, memories as at the start."""
+    out = copied(start)
+    n = len(vehicle.legs)
+    g = vehicle.body.gravity
+    q = quaternion(start.body, QX)
+    rate = vector(explicit.body, WX)
+    attitude = q
+    for _ in range(2):  # as in `body_at`
+        r = rotation(attitude)
+        spin = apply_transposed(r, vector(a[0], 3))
+        rate = axpy(h, spin, vector(explicit.body, WX))
+        attitude = normalise(multiply(q, from_rotation_vector(axpy(h, rate, vector(turns[0], 0)))))
+    v = axpy(h, add(vector(a[0], 0), (-g, 0.0, 0.0)), vector(explicit.body, VX))
+    put_vector(out.body, VX, v)
+    put_vector(out.body, X, axpy(h, v, vector(explicit.body, X)))
+    put_quaternion(out.body, QX, attitude)
+    put_vector(out.body, WX, rate)
+    r = rotation(attitude)
+    for i in range(n):
+        own = apply_transposed(r, vector(a[1 + i], 0))
+        v = axpy(h, own, vector(explicit.legs[i], V))
+        put_vector(out.legs[i], V, v)
+        put_vector(out.legs[i], P, axpy(h, v, vector(explicit.legs[i], P)))
+        w = axpy(h, vector(a[1 + i], 3), vector(explicit.legs[i], W))
+        put_vector(out.legs[i], W, w)
+        turn = axpy(h, w, vector(turns[1 + i], 0))
+        put_quaternion(out.legs[i], Q, normalise(multiply(from_rotation_vector(turn), quaternion(start.legs[i], Q))))
+    return out
+
+
+@jit
+def pad_motion(f: Flight, i: int) -> PadMotion:
+    """Pad i in L."""
+    r = rotation(quaternion(f.body, QX))
+    p, v = vector(f.legs[i], P), vector(f.legs[i], V)
+    carried = add(cross(vector(f.body, WX), p), v)
+    return PadMotion(
+        add(vector(f.body, X), apply(r, p)),
+        rotation(quaternion(f.legs[i], Q)),
+        add(vector(f.body, VX), apply(r, carried)),
+        vector(f.legs[i], W),
+    )
+
+
+@jit
+def latch(vehicle: Vehicle, f: Flight, touch: Array, t: float, h: float) -> None:
+    """Bring all memories up to the state at t + h; touch (n,) gets the instants of first contact (-1 before)."""
+    for i in range(len(vehicle.legs)):
+        row = f.legs[i]
+        before = Crush(row[CRUSH], row[CRUSH + 1], row[CRUSH + 2], row[CRUSH + 3], row[CRUSH + 4])
+        now = crushed(vehicle.legs[i], vector(row, P), before)
+        row[CRUSH], row[CRUSH + 1], row[CRUSH + 2] = now.primary, now.right_tension, now.right_compression
+        row[CRUSH + 3], row[CRUSH + 4] = now.left_tension, now.left_compression
+        above = deepest(f.memory[i])
+        remember(vehicle.soils[i], vehicle.surfaces[i], vehicle.pad, pad_motion(f, i), f.memory[i])
+        depth = deepest(f.memory[i])
+        if touch[i] < 0.0 and depth > 0.0:
+            touch[i] = t + h * above / (above - depth) if above <= 0.0 else t
+
+
+@jit
+def local_error(before: Array, one: Array, two: Array, h: float) -> float:
+    """Largest local error of a velocity over the step, m/s: C h³ a'' from three instants of the accelerations (n + 1, 6).
+
+    Leg rows are relative to the body. Rotations of the pads are left to the contact forces they cause.
+    """
+    worst = 0.0
+    c1 = GAMMA * h
+    for i in range(before.shape[0]):
+        square = 0.0
+        for j in range(3):
+            first = (one[i, j] - before[i, j]) / c1
+            second = (two[i, j] - one[i, j]) / (h - c1)
+            square += (2.0 * (second - first) / h) ** 2
+        worst = max(worst, square)
+    return float(ERROR_CONSTANT * h * h * h * worst**0.5)
+
+
+@jit
+def integrate(
+    vehicle: Vehicle, engine: Engine, settings: Settings, f: Flight, a: Array, ledger: Array, touch: Array, time: float, interval: float
+) -> Progress:
+    """Take f over `interval` (s) from `time`, in place.
+
+    a       accelerations at the start, (n + 1, 6): kept up to date, where Newton and the error estimate start
+    ledger  (n + 1, 4) energies, J: row 0 engine; rows 1.. soil, struts, ball joint: integrals of the powers
+    touch   (n,) instants of first contact
+    """
+    n = len(vehicle.legs)
+    work = scratch(n)
+    turns = np.zeros((n + 1, 3))
+    delta = np.zeros((n + 1, 6))
+    t, h = 0.0, min(settings.first, settings.longest)
+    steps, rejected = 0, 0
+    while interval - t > 1e-12:
+        left = interval - t
+        h = left if h > 0.999 * left else (0.5 * left if h > 0.5 * left else h)
+        g = GAMMA * h
+        begin = explicit_part(vehicle, f, 0.0, a, f, turns)
+        one = a.copy()
+        ok, power_1 = stage(vehicle, engine, t + g, g, f, begin.body, begin.legs, turns, one, delta, work)
+        middle = stage_state(vehicle, f, begin, turns, one, g)
+        between = explicit_part(vehicle, f, h - g, one, middle, turns)
+        two = one.copy()
+        error = 1e300
+        if ok:
+            ok, power_2 = stage(vehicle, engine, t + h, g, f, between.body, between.legs, turns, two, delta, work)
+            error = local_error(a, one, two, h) if ok else 1e300
+        if error > settings.tolerance and h > SMALLEST:
+            rejected += 1
+            h *= max(0.2, 0.9 * (settings.tolerance / error) ** (1.0 / 3.0))
+            continue
+        if not ok:
+            return Progress(False, h, steps, rejected)
+        end = stage_state(vehicle, f, between, turns, two, g)
+        latch(vehicle, end, touch, time + t, h)
+        f.body[:], f.legs[:, :], f.memory[:, :, :] = end.body, end.legs, end.memory
+        a[:, :] = two
+        ledger += (h - g) * power_1 + g * power_2
+        t += h
+        steps += 1
+        grown = 0.9 * (settings.tolerance / max(error, 1e-300)) ** (1.0 / 3.0)
+        h = min(settings.longest, h * min(2.0, max(0.2, grown)))
+    return Progress(True, h, steps, rejected)
+
+
+@jit
+def start_flight(vehicle: Vehicle, body: BodyState, f: Flight) -> None:
+    """Undeformed legs, virgin struts and soils."""
+    put_vector(f.body, X, body.position)
+    put_vector(f.body, VX, body.velocity)
+    put_quaternion(f.body, QX, body.attitude)
+    put_vector(f.body, WX, body.rate)
+    r = rotation(body.attitude)
+    for i in range(len(vehicle.legs)):
+        s = start_state(vehicle.legs[i], body.attitude, body.rate)
+        put_vector(f.legs[i], P, s.position)
+        put_vector(f.legs[i], V, s.velocity)
+        put_quaternion(f.legs[i], Q, s.attitude)
+        put_vector(f.legs[i], W, apply(r, s.rate))
+        c = s.crush
+        f.legs[i, CRUSH], f.legs[i, CRUSH + 1], f.legs[i, CRUSH + 2] = c.primary, c.right_tension, c.right_compression
+        f.legs[i, CRUSH + 3], f.legs[i, CRUSH + 4] = c.left_tension, c.left_compression
+        start_memory(vehicle.surfaces[i], vehicle.pad, pad_motion(f, i), f.memory[i])
+
+
+@jit
+def start_accelerations(vehicle: Vehicle, engine: Engine, f: Flight, a: Array) -> bool:
+    """Accelerations at the start, (n + 1, 6), by a stage of no length."""
+    n = len(vehicle.legs)
+    a[:, :] = 0.0
+    ok, _ = stage(vehicle, engine, 0.0, 1e-12, f, f.body, f.legs, np.zeros((n + 1, 3)), a, np.zeros((n + 1, 6)), scratch(n))
+    return ok
+
+
+def empty_flight(n: int) -> Flight:
+    """Room for n legs."""
+    return Flight(np.zeros(BODY_COLUMNS), np.zeros((n, LEG_COLUMNS)), np.zeros((n, 5, 8)))
+
+
+__all__ = ["Settings", "empty_flight", "integrate", "start_accelerations", "start_flight"]
