@@ -60,12 +60,15 @@ def account(kinetic: Array, potential: Array, dissipated: Array, supplied: Array
 
 
 def account_of(channels: Channels, table: ResultsTable) -> EnergyAccount | None:
-    """The account from recorded columns; None where no unit reports a kinetic energy or nothing was recorded.
+    """The account from recorded columns; None where no unit reports a kinetic energy or nobody says where energy may leave.
 
     Works from outside are the columns named in `[results] work`, else `engine.work` and `effectN.work` of the body.
+    What the soil took up is what the legs named in `[results.legs]` report; without legs, the works done on all units
+    that report work and no energy. Without any of these the residual would only show what was left out.
     """
     kinetic = channels.ending(".energy.kinetic")
-    if not kinetic or len(channels.times) == 0:
+    legs, silent = [f"{names.leg}.pad.work" for names in table.legs.values()], _works_on_silent_units(channels)
+    if not kinetic or len(channels.times) == 0 or not (legs or silent or table.work is not None):
         return None
     outside = table.work
     if outside is None:
@@ -75,5 +78,11 @@ def account_of(channels: Channels, table: ResultsTable) -> EnergyAccount | None:
         potential=channels.total(channels.ending(".energy.potential")),
         dissipated=channels.total(channels.ending(".energy.dissipated")),
         supplied=channels.total(outside),
-        pad_work=channels.total([f"{names.leg}.pad.work" for names in table.legs.values()]),
+        pad_work=channels.total(legs) if legs else -channels.total(silent),
     )
+
+
+def _works_on_silent_units(channels: Channels) -> list[str]:
+    """Columns of work done on units that report no energy of their own, and so are outside the account."""
+    accounted = {name.partition(".")[0] for name in channels.ending(".energy.kinetic")}
+    return [name for name in channels.ending(".work") if name.partition(".")[0] not in accounted]

@@ -65,6 +65,19 @@ def test_a_scenario_can_name_the_works_that_come_from_outside():
     assert books.residual[-1] == 0.0
 
 
+def test_without_legs_what_is_done_on_units_without_energies_was_absorbed():
+    columns_ = {"mass.energy.kinetic": columns(12, 0), "mass.pad.work": columns(0, -12), "soil.pad.work": columns(0, 12)}
+    books = account_of(Channels(columns(0, 1), columns_), ResultsTable())
+    assert books is not None
+    assert (books.absorbed[-1], books.residual[-1]) == (12.0, 0.0)
+
+
+def test_no_account_is_drawn_up_when_nothing_says_where_energy_may_leave():
+    columns_ = {"lander.energy.kinetic": columns(12, 0), "lander.leg1.pad.work": columns(0, -12)}
+    assert account_of(Channels(columns(0, 1), columns_), ResultsTable()) is None
+    assert account_of(Channels(columns(0, 1), columns_), ResultsTable(work=[])) is not None
+
+
 def test_units_without_energies_have_no_account():
     assert account_of(Channels(columns(0, 1), {"mass.position": columns(0, 1)}), ResultsTable()) is None
 
