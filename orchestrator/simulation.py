@@ -215,9 +215,12 @@ def fault(result: RunResult) -> OrchestratorError | None:
 
 
 def run_scenario(path: Path, overrides: Sequence[str] = (), changes: dict[str, Any] | None = None) -> RunResult:
-    """For scripts and tests: read, load, run."""
+    """For scripts and tests: read, load, run, free."""
     simulation = Simulation(draw_up(read_scenario(path, overrides, changes), path))
-    return simulation.run()
+    try:
+        return simulation.run()
+    finally:
+        simulation.close()
 
 
 def _path(interface: Interface) -> Path:

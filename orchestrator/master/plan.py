@@ -40,10 +40,10 @@ class Job:
     slave: Slave
     u: Vector
     first: Places
-    slope_at: Places
-    """Places in `u` from which H/2 times a slope is subtracted ..."""
-    slope_from: Places
-    """... and the slopes' places on the board."""
+    second: Places
+    """Empty where no slope is subtracted."""
+    half_rise: Vector
+    """Room for H/2 times the slopes."""
 
 
 @dataclass
@@ -94,11 +94,11 @@ class Plan:
         u = self.vectors[unit]
         places = {name: at for at, name in enumerate([*self.inputs[unit], *(f"der({r})" for r in self.rates[unit])])}
         first = np.full(len(u), self.board.zero, dtype=np.intp)
-        slopes: list[tuple[int, int]] = []
+        second = first.copy()
         for link in self.system.links:
             if link.target_unit == unit:
                 fresh = _is_fresh(link.source_unit, unit, phase, repeated)
-                self._route(link, fresh, places, first, slopes)
+                self._route(link, fresh, places, first, second)
         if phase is Phase.AGAIN:
             for number, port in enumerate(self.reduced):
                 if port.partner == unit:
@@ -106,10 +106,11 @@ class Plan:
                     for at, name in enumerate(port.mismatch):
                         if name in places:
                             first[places[name]] = base + at
-        pairs = np.array(slopes, dtype=np.intp).reshape(-1, 2)
-        return Job(unit, self.system.slaves[unit], u, first, pairs[:, 0].copy(), pairs[:, 1].copy())
+        if (second == self.board.zero).all():
+            second = second[:0]
+        return Job(unit, self.system.slaves[unit], u, first, second, np.zeros(len(second)))
 
-    def _route(self, link: Link, fresh: bool, places: dict[str, int], first: Places, slopes: list[tuple[int, int]]) -> None:
+    def _route(self, link: Link, fresh: bool, places: dict[str, int], first: Places, second: Places) -> None:
         board, source = self.board, link.source_unit
         target = places[link.target]
         mean, slope = companion(link.source, "_mean"), companion(link.source, "_slope")
@@ -120,7 +121,7 @@ class Plan:
         sloped = places.get(companion(link.target, "_slope"), places.get(f"der({link.target})"))
         if link.slope and sloped is not None and (source, slope) in board.place:
             first[sloped] = board.now_at(source, slope)
-            slopes.append((target, board.now_at(source, slope)))
+            second[target] = board.now_at(source, slope)
 
 
 def make_plan(system: System) -> Plan:

@@ -14,10 +14,12 @@ Values = Sequence[Mapping[str, Value]]
 
 
 def assemble(board: Vector, job: Job, half: float) -> None:
-    """Write a unit's inputs: u = board[first] − half·board[slope]; `half` is half the interval, s."""
-    np.take(board, job.first, out=job.u, mode="clip")
-    if job.slope_at.size:
-        job.u[job.slope_at] -= half * board[job.slope_from]
+    """Write a unit's inputs: u = board[first] − half·board[second]; `half` is half the interval, s."""
+    board.take(job.first, out=job.u, mode="clip")
+    if job.second.size:
+        board.take(job.second, out=job.half_rise, mode="clip")
+        job.half_rise *= half
+        job.u -= job.half_rise
 
 
 def initialise(plan: Plan, jobs: Sequence[Job], start: float, stop: float, values: Values) -> None:
