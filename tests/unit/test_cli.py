@@ -1,0 +1,135 @@
+"""The command line, as a user meets it: in a process of its own, so that exit codes and crashes at exit show."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from fmi_samples import oscillator, sample_fmus
+
+
+def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120)
+
+
+def test_a_run_leaves_its_results_and_a_table_and_exit_code_zero(tmp_path: Path) -> None:
+    done = orchestrator("run", oscillator(tmp_path), "--out", tmp_path / "out", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "Two masses and a spring" in done.stdout
+    assert done.stderr == ""                        # no progress bar in a pipe
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["complete"] is True
+
+
+def test_a_bare_name_is_found_and_results_have_a_default_place(tmp_path: Path) -> None:
+    (tmp_path / "scenarios").mkdir()
+    oscillator(tmp_path / "scenarios")
+    done = orchestrator("run", "oscillator", "--quiet", "--stop-time", "0.05", "--tolerance", "1e-5", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
+    assert (tmp_path / "results" / "oscillator" / "summary.json").is_file()
+
+
+def test_list_gives_names_and_titles_and_leaves_data_out(tmp_path: Path) -> None:
+    (tmp_path / "scenarios").mkdir()
+    oscillator(tmp_path / "scenarios")
+    (tmp_path / "scenarios" / "data.toml").write_text("x = 1\n")
+    done = orchestrator("list", cwd=tmp_path)
+    assert done.returncode == 0
+    assert done.stdout.split() == ["oscillator", "Two", "masses", "and", "a", "spring"]
+
+
+def test_show_tells_units_connections_and_parameters_without_running(tmp_path: Path) -> None:
+    done = orchestrator("show", oscillator(tmp_path), "--set", "b.mass=3.5", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for text in ("SampleSpring", "a.end", "spring.a", "b.mass", "3.5"):
+        assert text in done.stdout
+    assert not (tmp_path / "results").exists()
+
+
+WRONG = {
+    "an unknown parameter": (("--set", "a.mas=1"), "oscillator.toml: a.mas: unknown parameter"),
+    "an unknown unit": (("--set", "c.mass=1"), '--set c.mass=1: no unit "c"'),
+    "a value that is no number": (("--set", "a.mass=nan"), "oscillator.toml: a.mass = nan: is not a number"),
+    "a stop time before the start": (("--stop-time", "-1"), "oscillator.toml: stop_time -1 s is not after start_time 0 s"),
+    "an unknown option": (("--stopp", "1"), "No such option: --stopp"),
+    "a negative tolerance": (("--tolerance", "-1"), "oscillator.toml: master.tolerance = -1.0: input should be greater than 0"),
+}
+
+
+@pytest.mark.parametrize(("arguments", "message"), WRONG.values(), ids=WRONG)
+def test_a_request_that_cannot_be_run_is_one_line_and_exit_code_two(tmp_path: Path, arguments: tuple[str, str], message: str) -> None:
+    done = orchestrator("run", oscillator(tmp_path), *arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "Traceback" not in done.stderr
+
+
+BROKEN = {
+    "a missing FMU": ('fmu = "SampleSpring"', 'fmu = "SampleSprng"', 'no such FMU; did you mean "SampleSpring"?'),
+    "a missing folder": (sample_fmus().as_posix(), "/nowhere", "no such FMU, nor any other in that folder; build them"),
+    "a missing port": ("spring.a", "spring.c", 'spring.c: unit spring has no port "c"'),
+    "bad TOML": ("[master]", "[master", "oscillator.toml: not valid TOML"),
+    "an unknown key": ("max_interval", "max_intervall", 'master.max_intervall: unknown key; did you mean "max_interval"?'),
+    "an input connected twice": ("b.end", "a.end", "a.end.force: fed by spring.a.force and by spring.b.force"),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "message"), BROKEN.values(), ids=BROKEN)
+def test_a_broken_scenario_is_one_line_and_exit_code_two(tmp_path: Path, old: str, new: str, message: str) -> None:
+    path = oscillator(tmp_path, **{old: new})
+    done = orchestrator("run", path, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_missing_scenario_names_the_nearest(tmp_path: Path) -> None:
+    (tmp_path / "scenarios").mkdir()
+    oscillator(tmp_path / "scenarios")
+    done = orchestrator("run", "oscilator", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == 'error: oscilator: no such scenario; did you mean "oscillator"?\n'
+
+
+def moody(folder: Path) -> Path:
+    path = folder / "moody.toml"
+    path.write_text(f'stop_time = 1.0\nfmus = "{sample_fmus().as_posix()}"\n[units.m]\nfmu = "SampleMoody"\n')
+    return path
+
+
+@pytest.mark.parametrize(
+    ("parameter", "message"),
+    [("raise_from", "m: doStep returned Fatal: "), ("refuse_from", "m: refused the step at t = 0.1"), ("nan_from", "m: time is nan near t = 0.1")],
+)
+def test_a_run_that_cannot_be_finished_keeps_what_it_has_and_returns_three(tmp_path: Path, parameter: str, message: str) -> None:
+    done = orchestrator("run", moody(tmp_path), "--set", f"m.{parameter}=0.1", "--out", tmp_path / "out", cwd=tmp_path)
+    assert done.returncode == 3
+    assert message in done.stderr
+    assert "Traceback" not in done.stderr
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["complete"] is False
+
+
+def test_a_run_that_misses_its_tolerance_is_not_trusted_and_returns_three(tmp_path: Path) -> None:
+    path = oscillator(tmp_path, **{"tolerance = 1e-6": "tolerance = 1e-12\nmin_interval = 1e-3"})
+    done = orchestrator("run", path, "--out", tmp_path / "out", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "steps missed the tolerance 1e-12 m at the smallest interval" in done.stderr
+
+
+def test_ctrl_c_keeps_everything_computed_marked_incomplete(tmp_path: Path) -> None:
+    path = oscillator(tmp_path, **{"stop_time = 0.5": "stop_time = 1000.0"})
+    command = [sys.executable, "-m", "orchestrator.cli", "run", str(path), "--out", str(tmp_path / "out")]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tmp_path, env={**os.environ})
+    time.sleep(4.0)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    assert "interrupted" in errors
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["complete"] is False
