@@ -110,10 +110,24 @@ def write_mount(leg: Leg, last: Stage, impulse: Vector, angular_impulse: Vector,
 
 
 @jit
-def start_leg(leg: Leg, gravity: float, body: Array, load: Array, mount: Array, pad: Array, model: Array, struts: Array, ledger: Array, s: Array) -> None:
-    """States and outputs at the start: undeformed, virgin, at rest relative to the body, pad level with it."""
+def start_leg(
+    leg: Leg,
+    gravity: float,
+    stroke_rate: float,
+    body: Array,
+    load: Array,
+    mount: Array,
+    pad: Array,
+    model: Array,
+    struts: Array,
+    ledger: Array,
+    s: Array,
+) -> None:
+    """States and outputs at the start: undeformed, virgin, pad level with the body; only the primary may move, at stroke_rate (m/s)."""
     base = base_at(read_base(body), 0.0)
     now = start_state(leg, base.attitude, base.rate)
+    axis = shape(leg, now.position, ZERO).axis
+    now = LegState(now.position, scale(-stroke_rate, axis), now.attitude, now.rate, now.crush)
     write_state(s, now, ZERO)
     force = read_load(load).force
     frame = as_base(base, gravity)

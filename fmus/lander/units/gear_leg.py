@@ -14,6 +14,12 @@ from ..shell import Unit, UnitError, input_, output, parameter, state
 Array = NDArray[np.float64]
 
 
+POSE = ("body.position", "body.quaternion")
+TWIST = (*POSE, "body.velocity", "body.angular_velocity")
+MOTION = (*TWIST, "body.acceleration", "body.angular_acceleration")
+LOADED = (*MOTION, "pad.force", "pad.force_added")
+
+
 class GearLeg(Unit):
     """A primary strut on a universal joint, whose piston ends in the footpad's ball joint, braced by two secondaries on its cylinder.
 
@@ -62,6 +68,7 @@ class GearLeg(Unit):
         parameter("stop_stiffness", 4e7, "N/m", "of the end stops: that of the stiffest core, F/s", minimum=1.0),
         parameter("stop_damping", 6e4, "N.s/m", "of the end stops: critical for piston and pad", minimum=0.0),
         parameter("longest_substep", 2.5e-4, "s", "of the integrator inside the leg", minimum=1e-7),
+        parameter("stroke_rate_start", 0.0, "m/s", "compression rate of the primary at the start, for drop tests"),
         input_("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
         input_("body.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "B to L", nominal=1.0),
         input_("body.velocity", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame L", nominal=1.0),
@@ -70,36 +77,36 @@ class GearLeg(Unit):
         input_("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, slope=True),
         input_("pad.force", (0.0, 0.0, 0.0), "N", "on the pad, frame L", nominal=1e4, slope=True, added=True),
         input_("pad.torque", (0.0, 0.0, 0.0), "N.m", "on the pad about the ball joint, frame L", nominal=1e3, slope=True, added=True),
-        output("mount.force", (0.0, 0.0, 0.0), "N", "on the body, frame B, less the rigid leg's", nominal=1e4, mean=True, slope=True),
-        output("mount.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, mean=True, slope=True),
-        output("pad.position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
-        output("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0),
-        output("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
-        output("pad.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0),
-        output("pad.model_acceleration", (0.0, 0.0, 0.0), "m/s2", "a_f: of the ball joint without force, frame L", nominal=1.0),
-        output("pad.model_mobility", (0.0,) * 9, "1/kg", "Y, by rows, frame L", nominal=0.04),
-        output("pad.model_stiffness", (0.0,) * 9, "1/s2", "A_x, by rows, frame L", nominal=1e6),
-        output("pad.model_damping", (0.0,) * 9, "1/s", "A_v, by rows, frame L", nominal=1e4),
-        output("pad.model_base_velocity", (0.0, 0.0, 0.0), "m/s", "V_b: of the body's point at the ball joint, frame L", nominal=1.0),
-        output("pad.model_base_acceleration", (0.0, 0.0, 0.0), "m/s2", "A_b: of the same point, frame L", nominal=1.0),
-        output("pad.model_inertia", (0.0, 0.0, 0.0), "kg.m2", "of the pad about its own axes", nominal=1.0),
-        output("pad.model_joint_damping", 0.0, "N.m.s/rad", "of the ball joint", nominal=100.0),
-        output("pad.model_strut_rate", (0.0, 0.0, 0.0), "rad/s", "of the piston, frame L", nominal=1.0),
-        output("primary.stroke", 0.0, "m", "compression", nominal=0.1),
-        output("right.stroke", 0.0, "m", "elongation of the secondary to the right, looking outward", nominal=0.1),
-        output("left.stroke", 0.0, "m", "elongation of the secondary to the left", nominal=0.1),
-        output("primary.load", 0.0, "N", "axial force, compression positive", nominal=1e4),
-        output("right.load", 0.0, "N", "axial force, tension positive", nominal=1e4),
-        output("left.load", 0.0, "N", "axial force, tension positive", nominal=1e4),
-        output("primary.peak_stroke", 0.0, "m", "greatest compression so far", nominal=0.1),
-        output("right.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1),
-        output("left.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1),
-        output("bottomed", False, "", "whether any strut is beyond its stroke limit", boolean=True),
-        output("mount.work", 0.0, "J", "done on the leg by the body since the start", nominal=1e3),
-        output("pad.work", 0.0, "J", "done on the leg by the pad's wrench since the start", nominal=1e3),
-        output("energy.kinetic", 0.0, "J", "less that of the rigid leg, which the body carries", nominal=1e3),
-        output("energy.potential", 0.0, "J", "less that of the rigid leg", nominal=1e3),
-        output("energy.dissipated", 0.0, "J", "taken up by struts and joints since the start", nominal=1e3),
+        output("mount.force", (0.0, 0.0, 0.0), "N", "on the body, frame B, less the rigid leg's", nominal=1e4, mean=True, slope=True, initially=LOADED),
+        output("mount.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, mean=True, slope=True, initially=LOADED),
+        output("pad.position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0, initially=POSE),
+        output("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0, initially=POSE),
+        output("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0, initially=TWIST),
+        output("pad.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0, initially=TWIST),
+        output("pad.model_acceleration", (0.0, 0.0, 0.0), "m/s2", "a_f: of the ball joint without force, frame L", nominal=1.0, initially=LOADED),
+        output("pad.model_mobility", (0.0,) * 9, "1/kg", "Y, by rows, frame L", nominal=0.04, initially=LOADED),
+        output("pad.model_stiffness", (0.0,) * 9, "1/s2", "A_x, by rows, frame L", nominal=1e6, initially=LOADED),
+        output("pad.model_damping", (0.0,) * 9, "1/s", "A_v, by rows, frame L", nominal=1e4, initially=LOADED),
+        output("pad.model_base_velocity", (0.0, 0.0, 0.0), "m/s", "V_b: of the body's point at the ball joint, frame L", nominal=1.0, initially=TWIST),
+        output("pad.model_base_acceleration", (0.0, 0.0, 0.0), "m/s2", "A_b: of the same point, frame L", nominal=1.0, initially=MOTION),
+        output("pad.model_inertia", (0.0, 0.0, 0.0), "kg.m2", "of the pad about its own axes", nominal=1.0, initially=()),
+        output("pad.model_joint_damping", 0.0, "N.m.s/rad", "of the ball joint", nominal=100.0, initially=()),
+        output("pad.model_strut_rate", (0.0, 0.0, 0.0), "rad/s", "of the piston, frame L", nominal=1.0, initially=TWIST),
+        output("primary.stroke", 0.0, "m", "compression", nominal=0.1, initially=()),
+        output("right.stroke", 0.0, "m", "elongation of the secondary to the right, looking outward", nominal=0.1, initially=()),
+        output("left.stroke", 0.0, "m", "elongation of the secondary to the left", nominal=0.1, initially=()),
+        output("primary.load", 0.0, "N", "axial force, compression positive", nominal=1e4, initially=LOADED),
+        output("right.load", 0.0, "N", "axial force, tension positive", nominal=1e4, initially=LOADED),
+        output("left.load", 0.0, "N", "axial force, tension positive", nominal=1e4, initially=LOADED),
+        output("primary.peak_stroke", 0.0, "m", "greatest compression so far", nominal=0.1, initially=()),
+        output("right.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1, initially=()),
+        output("left.peak_stroke", 0.0, "m", "greatest elongation so far", nominal=0.1, initially=()),
+        output("bottomed", False, "", "whether any strut is beyond its stroke limit", boolean=True, initially=()),
+        output("mount.work", 0.0, "J", "done on the leg by the body since the start", nominal=1e3, initially=()),
+        output("pad.work", 0.0, "J", "done on the leg by the pad's wrench since the start", nominal=1e3, initially=()),
+        output("energy.kinetic", 0.0, "J", "less that of the rigid leg, which the body carries", nominal=1e3, initially=TWIST),
+        output("energy.potential", 0.0, "J", "less that of the rigid leg", nominal=1e3, initially=TWIST),
+        output("energy.dissipated", 0.0, "J", "taken up by struts and joints since the start", nominal=1e3, initially=()),
         state("leg.position", (0.0, 0.0, 0.0)),
         state("leg.velocity", (0.0, 0.0, 0.0)),
         state("leg.attitude", (1.0, 0.0, 0.0, 0.0)),
@@ -107,10 +114,6 @@ class GearLeg(Unit):
         state("leg.crush", (0.0,) * 5),
         state("leg.guess", (0.0, 0.0, 0.0), "last acceleration, where Newton starts"),
     )
-
-    def dimensions(self) -> GearDimensions:
-        """Table 2 of this leg."""
-        return GearDimensions(**{name: self.value(name) for name in GearDimensions._fields})
 
     def check(self) -> Iterable[str]:
         for strut in ("primary", "tension"):
@@ -120,39 +123,12 @@ class GearLeg(Unit):
                     f"expects less than {strut}_limit, {self.value(f'{strut}_limit'):g} m"
                 )
         try:
-            self.geometry()
+            geometry_of(self, self.value("azimuth"))
         except GeometryError as error:
             yield str(error)
 
-    def geometry(self) -> LegGeometry:
-        """The undeformed leg; GeometryError where it cannot close."""
-        return leg_geometry(self.dimensions(), self.value("azimuth"), self.value("origin_height"), self.value("primary_limit"))
-
-    def core(self, loads: Array, boundary: float, limit: float) -> Core:
-        """A cartridge with the leg's common parameters; its damping is that of its greatest load."""
-        width, mass = self.value("transition_width"), self.value("vehicle_mass")
-        c = brake_damping(self.value("damping_ratio"), float(loads.max()), width, mass)
-        weight = 1.0 if self.value("printed_datum_weight") else DATUM_WEIGHT
-        return Core(float(loads[0]), float(loads[-1]), boundary, limit, width, c, weight)
-
     def prepare(self) -> None:
-        pad = disc_inertia(self.value("footpad_mass"), self.value("footpad_radius"))
-        reach = self.value("compression_limit")
-        self.leg = Leg(
-            self.geometry(),
-            self.value("primary_strut_mass"),
-            self.value("primary_piston_mass"),
-            self.value("secondary_strut_mass"),
-            self.value("footpad_mass"),
-            pad,
-            self.core(self["primary_load"], self.value("primary_boundary"), self.value("primary_limit")),
-            self.core(self["tension_load"], self.value("tension_boundary"), self.value("tension_limit")),
-            self.core(self["compression_load"], 2.0 * reach, reach),
-            Stop(self.value("stop_stiffness"), self.value("stop_damping"), 1e-4),
-            self.value("bearing_friction"),
-            self.value("bearing_slip_velocity"),
-            self.value("joint_damping"),
-        )
+        self.leg = leg_of(self, self.value("azimuth"), self.value("vehicle_mass"))
         self.inputs = self.span("body.position", "body.angular_acceleration_slope"), self.span("pad.force", "pad.torque_added")
         self.outputs = (
             self.span("mount.force", "mount.torque_slope"),
@@ -164,7 +140,7 @@ class GearLeg(Unit):
         self.states = self.span("leg.position", "leg.guess")
 
     def initialise(self) -> None:
-        start_leg(self.leg, self.value("gravity"), *self.inputs, *self.outputs, self.states)
+        start_leg(self.leg, self.value("gravity"), self.value("stroke_rate_start"), *self.inputs, *self.outputs, self.states)
 
     def advance(self, time: float, step: float) -> None:
         gravity, longest = self.value("gravity"), self.value("longest_substep")
@@ -174,3 +150,37 @@ class GearLeg(Unit):
                 "a shorter interval may do"
             )
         self["bottomed"] = float(bottomed(self.leg, *self.span("primary.stroke", "left.stroke").tolist()))
+
+
+def geometry_of(unit: Unit, azimuth: float) -> LegGeometry:
+    """The undeformed leg from a unit's parameters; GeometryError where it cannot close."""
+    dimensions = GearDimensions(**{name: unit.value(name) for name in GearDimensions._fields})
+    return leg_geometry(dimensions, azimuth, unit.value("origin_height"), unit.value("primary_limit"))
+
+
+def core_of(unit: Unit, loads: Array, boundary: float, limit: float, vehicle_mass: float) -> Core:
+    """A cartridge; its damping is that of its greatest load."""
+    width = unit.value("transition_width")
+    c = brake_damping(unit.value("damping_ratio"), float(loads.max()), width, vehicle_mass)
+    weight = 1.0 if unit.value("printed_datum_weight") else DATUM_WEIGHT
+    return Core(float(loads[0]), float(loads[-1]), boundary, limit, width, c, weight)
+
+
+def leg_of(unit: Unit, azimuth: float, vehicle_mass: float) -> Leg:
+    """Everything constant about a leg from a unit's parameters; azimuth in rad, vehicle_mass in kg."""
+    reach = unit.value("compression_limit")
+    return Leg(
+        geometry_of(unit, azimuth),
+        unit.value("primary_strut_mass"),
+        unit.value("primary_piston_mass"),
+        unit.value("secondary_strut_mass"),
+        unit.value("footpad_mass"),
+        disc_inertia(unit.value("footpad_mass"), unit.value("footpad_radius")),
+        core_of(unit, unit["primary_load"], unit.value("primary_boundary"), unit.value("primary_limit"), vehicle_mass),
+        core_of(unit, unit["tension_load"], unit.value("tension_boundary"), unit.value("tension_limit"), vehicle_mass),
+        core_of(unit, unit["compression_load"], 2.0 * reach, reach, vehicle_mass),
+        Stop(unit.value("stop_stiffness"), unit.value("stop_damping"), 1e-4),
+        unit.value("bearing_friction"),
+        unit.value("bearing_slip_velocity"),
+        unit.value("joint_damping"),
+    )

@@ -3,10 +3,13 @@
 from ..laws.footpad import COLUMNS, POINTS, Footpad
 from ..laws.soil import Soil
 from ..laws.soil_exchange import advance_soil, start_soil
-from ..laws.surface import inclined_plane
+from ..laws.surface import Surface, inclined_plane
 from ..shell import Unit, UnitError, input_, output, parameter, state
 
 DEEP = 0.05  # m: a pad that starts deeper than this is a mistake of the scenario, not a landing
+
+
+PAD = ("pad.position", "pad.quaternion", "pad.velocity", "pad.angular_velocity")
 
 
 class RegolithContact(Unit):
@@ -23,6 +26,7 @@ class RegolithContact(Unit):
     """
 
     description = "Regolith under one footpad: normal contact, friction and plowing at five points."
+    initially = PAD
     variables = (
         parameter("law", 1, "1", "1: published, with residual sink rate; 2: rate-independent", integer=True, minimum=1, maximum=2),
         parameter("bearing_strength", 350254.0, "N/m", "K_n per footpad, N/m^p (Table 4)", minimum=1.0),
@@ -71,21 +75,7 @@ class RegolithContact(Unit):
     )
 
     def prepare(self) -> None:
-        share = 1.0 / POINTS
-        self.soil = Soil(
-            int(self.value("law")),
-            share * self.value("bearing_strength"),
-            self.value("compaction_exponent"),
-            share * self.value("damping"),
-            self.value("damping_activation_depth"),
-            self.value("rebound_band"),
-            self.value("residual_sink_rate"),
-            self.value("friction"),
-            share * self.value("plowing"),
-            self.value("slip_velocity"),
-        )
-        x, y, z = self["ground_origin"].tolist()
-        self.surface = inclined_plane(self.value("ground_slope"), self.value("ground_azimuth"), (x, y, z))
+        self.soil, self.surface = soil_of(self)
         self.pad = Footpad(self.value("footpad_radius"), self.value("footpad_height"))
         self.port = self.span("pad.position", "pad.angular_velocity")
         self.outputs = (
@@ -99,10 +89,7 @@ class RegolithContact(Unit):
 
     def initialise(self) -> None:
         depth = start_soil(self.soil, self.surface, self.pad, self.port, *self.outputs)
-        if depth > DEEP:
-            raise UnitError(
-                f"the pad starts {depth:.4g} m deep in the soil, expects at most {DEEP:g} m: raise the vehicle's position_start[1] or lower ground_origin[1]"
-            )
+        refuse_deep(depth, "the pad")
         self.feel(self.start_time)
 
     def advance(self, time: float, step: float) -> None:
@@ -122,3 +109,32 @@ class RegolithContact(Unit):
         self["contact"] = float(touching)
         if touching and self.value("contact_time") < 0.0:
             self["contact_time"] = time
+
+
+def soil_of(unit: Unit, prefix: str = "") -> tuple[Soil, Surface]:
+    """Soil of one contact point, and the surface, from a unit's parameters (names with `prefix`)."""
+    share = 1.0 / POINTS
+
+    def of(name: str) -> float:
+        return unit.value(prefix + name)
+
+    soil = Soil(
+        int(of("law")),
+        share * of("bearing_strength"),
+        of("compaction_exponent"),
+        share * of("damping"),
+        of("damping_activation_depth"),
+        of("rebound_band"),
+        of("residual_sink_rate"),
+        of("friction"),
+        share * of("plowing"),
+        of("slip_velocity"),
+    )
+    x, y, z = unit[f"{prefix}ground_origin"].tolist()
+    return soil, inclined_plane(of("ground_slope"), of("ground_azimuth"), (x, y, z))
+
+
+def refuse_deep(depth: float, which: str) -> None:
+    """UnitError for a pad that starts deep in the soil."""
+    if depth > DEEP:
+        raise UnitError(f"{which} starts {depth:.4g} m deep in the soil, expects at most {DEEP:g} m: raise position_start[1] of the body")

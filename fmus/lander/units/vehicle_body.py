@@ -5,11 +5,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..laws.rigid_body import Body, BodyLoad, BodyState, body_energy, body_rate, inertia_matrix, step_body, wrench_work
-from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation, scale, sub, yaw_pitch_roll
+from ..laws.vectors import ZERO, Vector, add, apply, from_yaw_pitch_roll, rotation, scale, sub, yaw_pitch_roll
 from ..shell import Unit, input_, output, parameter
 
 PORTS = (*(f"leg{k}" for k in range(1, 9)), "engine", *(f"effect{k}" for k in range(1, 5)))
 LONGEST = 1e-3  # s, Runge-Kutta step: its error per step is below 1e-12 of the motion at rates of 1 rad/s
+UNLOADED = BodyLoad(ZERO, ZERO, ZERO, ZERO)
 WRENCH = 18  # numbers of one wrench port: force, slope, added, torque, slope, added
 
 
@@ -72,7 +73,7 @@ class VehicleBody(Unit):
         attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
         velocity = apply(rotation(attitude), triple(self["velocity_start"]))
         now = BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"]))
-        rate = body_rate(self.body, now, self.load(), 0.0)
+        rate = body_rate(self.body, now, UNLOADED, 0.0)  # the wrenches are not known yet: legs wait for the body's motion
         self.show(now)
         self["body.acceleration"] = self["body.acceleration_mean"] = rate.acceleration
         self["body.angular_acceleration"] = self["body.angular_acceleration_mean"] = rate.spin_up

@@ -1,0 +1,165 @@
+"""LunarLander: the whole vehicle on its soil in one unit, the monolithic twin of the co-simulation."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..laws.footpad import COLUMNS, POINTS, Footpad, deepest
+from ..laws.rigid_body import Body, BodyState, inertia_matrix
+from ..laws.soil import Soil
+from ..laws.surface import Surface
+from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Engine, Flight, Vehicle
+from ..laws.twin_exchange import LEG_REPORT, show
+from ..laws.twin_stepping import Settings, integrate, start_accelerations, start_flight
+from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation
+from ..shell import Unit, UnitError, input_, output, parameter, state
+from ..shell.records import Record
+from . import gear_leg, regolith_contact, vehicle_body
+
+LEGS = 4
+Array = NDArray[np.float64]
+
+
+def parameters_of(variables: Iterable[Record], without: Iterable[str], prefix: str = "") -> tuple[Record, ...]:
+    """The parameters another unit declares, under another name: declared once, beside their number."""
+    left_out = set(without)
+    return tuple(replace(v, name=prefix + v.name) for v in variables if v.causality == "parameter" and v.name not in left_out)
+
+
+def leg_outputs(k: int) -> tuple[Record, ...]:
+    """What leg k and its soil show, in the order of `twin_exchange.show_leg`."""
+    struts = ("primary", "right", "left")
+    return (
+        output(f"leg{k}.pad.position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
+        output(f"leg{k}.pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
+        *(output(f"leg{k}.{s}.stroke", 0.0, "m", "compression of the primary, elongation of a secondary", nominal=0.1) for s in struts),
+        *(output(f"leg{k}.{s}.load", 0.0, "N", "axial force without bearing friction", nominal=1e4) for s in struts),
+        *(output(f"leg{k}.{s}.peak_stroke", 0.0, "m", "greatest stroke so far", nominal=0.1) for s in struts),
+        output(f"leg{k}.bottomed", False, "", "whether any strut is beyond its stroke limit", boolean=True),
+        output(f"leg{k}.energy.dissipated", 0.0, "J", "taken up by struts and joints since the start", nominal=1e3),
+        output(f"leg{k}.pad.work", 0.0, "J", "done on the leg by the soil since the start", nominal=1e3),
+        output(f"soil{k}.penetration", 0.0, "m", "depth of the pad's centre below the surface", nominal=0.05),
+        output(f"soil{k}.gap", 0.0, "m", "height of the lowest point above the surface along L's x; negative in the soil", nominal=0.1),
+        output(f"soil{k}.skid", 0.0, "m", "slide of the pad's centre in the soil since first contact", nominal=0.1),
+        output(f"soil{k}.normal_force", 0.0, "N", "along the surface's normal", nominal=1e4),
+        output(f"soil{k}.contact", False, "", "whether any point is in the soil", boolean=True),
+        output(f"soil{k}.contact_time", -1.0, "s", "of first contact, -1 before", nominal=1.0),
+    )
+
+
+ENGINE = ("engine.force", "engine.force_added", "engine.torque", "engine.torque_added")
+
+
+class LunarLander(Unit):
+    """Body, four legs and their soils assembled from the same laws as the units and integrated as one system, tightly.
+
+    Unknowns are the accelerations of body, ball joints and pads (30); SDIRK2 with Newton, each leg eliminated into the body; the step follows
+    the local error of the velocities (`tolerance`, m/s a step). It shares the laws with the units, not the coupling: the co-simulation must equal it.
+    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soilK.*`). Parameters are those of VehicleBody, GearLeg and RegolithContact.
+    """
+
+    description = "The whole lander in one unit: what the co-simulation must equal."
+    initially = ENGINE
+    variables = (
+        *parameters_of(vehicle_body.VehicleBody.variables, ()),
+        *parameters_of(gear_leg.GearLeg.variables, ("azimuth", "gravity", "vehicle_mass", "longest_substep")),
+        parameter("azimuth", (0.0, 0.5 * pi, pi, -0.5 * pi), "rad", "of legs 1 to 4 about B's x axis, from +Z to +Y"),
+        *(
+            record
+            for k in range(1, LEGS + 1)
+            for record in parameters_of(
+                regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep"), f"soil{k}."
+            )
+        ),
+        parameter("tolerance", 1e-5, "m/s", "local error of any velocity a step", minimum=1e-9, maximum=1e-2),
+        parameter("longest_step", 1e-2, "s", "of the integrator", minimum=1e-6),
+        input_("engine.force", (0.0, 0.0, 0.0), "N", "on the body, frame B", nominal=1e4, slope=True, added=True),
+        input_("engine.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, slope=True, added=True),
+        output("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
+        output("body.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "attitude (w, x, y, z), B to L", nominal=1.0),
+        output("body.velocity", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame L", nominal=1.0),
+        output("body.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame B", nominal=0.1),
+        output("body.acceleration", (0.0, 0.0, 0.0), "m/s2", "of the origin of B, frame L", nominal=1.0),
+        output("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0),
+        *(output(f"attitude.{a}", 0.0, "rad", f"{a} angle, 321 sequence", nominal=1.0) for a in ("yaw", "pitch", "roll")),
+        *(output(f"rates.{a}", 0.0, "rad/s", f"{a} rate, frame B", nominal=0.1) for a in ("yaw", "pitch", "roll")),
+        output("energy.kinetic", 0.0, "J", "of the whole vehicle", nominal=1e3),
+        output("energy.potential", 0.0, "J", "of the whole vehicle, zero at the origin of L", nominal=1e3),
+        output("engine.work", 0.0, "J", "done on the body through this port since the start", nominal=1e3),
+        *(record for k in range(1, LEGS + 1) for record in leg_outputs(k)),
+        output("steps", 0.0, "1", "integration steps so far", nominal=1e3),
+        output("rejected", 0.0, "1", "integration steps refused so far", nominal=1e3),
+        state("flight.body", (0.0,) * BODY_COLUMNS),
+        state("flight.legs", (0.0,) * (LEGS * LEG_COLUMNS)),
+        state("flight.memory", (0.0,) * (LEGS * POINTS * COLUMNS)),
+        state("accelerations", (0.0,) * ((LEGS + 1) * 6)),
+        state("ledger", (0.0,) * ((LEGS + 1) * 4)),
+        state("touch", (-1.0,) * LEGS),
+        state("next_step", 1e-5),
+    )
+
+    def check(self) -> Iterable[str]:
+        try:
+            self.prepare()
+        except ValueError as error:
+            yield str(error)
+
+    def prepare(self) -> None:
+        body = Body(
+            self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity")
+        )
+        legs = tuple(gear_leg.leg_of(self, azimuth, self.value("mass")) for azimuth in self["azimuth"].tolist())
+        soils: list[Soil] = []
+        surfaces: list[Surface] = []
+        for k in range(1, LEGS + 1):
+            soil, surface = regolith_contact.soil_of(self, f"soil{k}.")
+            soils.append(soil)
+            surfaces.append(surface)
+        pad = Footpad(self.value("footpad_radius"), self.value("footpad_height"))
+        self.vehicle = Vehicle(body, legs, tuple(soils), tuple(surfaces), pad)
+        self.flight = Flight(
+            self["flight.body"],
+            self["flight.legs"].reshape(LEGS, LEG_COLUMNS),
+            self["flight.memory"].reshape(LEGS, POINTS, COLUMNS),
+        )
+        self.course = self["accelerations"].reshape(LEGS + 1, 6), self["ledger"].reshape(LEGS + 1, 4), self["touch"]
+        self.outputs = (
+            self.span("body.position", "rates.roll"),
+            self.span("energy.kinetic", "engine.work"),
+            self.span("leg1.pad.position", f"soil{LEGS}.contact_time").reshape(LEGS, LEG_REPORT),
+        )
+
+    def engine(self) -> Engine:
+        """Wrench of the engine port, its socket included."""
+        row = self.span("engine.force", "engine.torque_added").reshape(6, 3).tolist()
+        force, slope, added, torque, torque_slope, torque_added = ((x, y, z) for x, y, z in row)
+        return Engine(add(force, added), add(torque, torque_added), slope, torque_slope)
+
+    def initialise(self) -> None:
+        attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
+        velocity = apply(rotation(attitude), triple(self["velocity_start"]))
+        start_flight(self.vehicle, BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"])), self.flight)
+        for k in range(LEGS):
+            regolith_contact.refuse_deep(deepest(self.flight.memory[k]), f"pad {k + 1}")
+        if not start_accelerations(self.vehicle, self.engine(), self.flight, self.course[0]):
+            raise UnitError("the accelerations at the start could not be found; check the start position against the ground")
+        show(self.vehicle, self.flight, *self.course, *self.outputs)
+
+    def advance(self, time: float, step: float) -> None:
+        settings = Settings(self.value("tolerance"), self.value("longest_step"), self.value("next_step"))
+        done = integrate(self.vehicle, self.engine(), settings, self.flight, *self.course, time, step)
+        if not done.ok:
+            raise UnitError(f"the equations did not converge over a step of {done.next_step:.3g} s; a larger tolerance may do")
+        self["next_step"] = done.next_step
+        self["steps"] += done.steps
+        self["rejected"] += done.rejected
+        show(self.vehicle, self.flight, *self.course, *self.outputs)
+
+
+def triple(view: Array) -> Vector:
+    """A view of three numbers as a tuple."""
+    x, y, z = view.tolist()
+    return (x, y, z)
