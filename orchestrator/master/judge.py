@@ -8,6 +8,8 @@ from typing import NamedTuple
 from orchestrator.master.settings import MasterSettings, in_ns
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 2.0
+SETTLING = 3
+"""Accepted steps after a rejection during which the interval may not grow: it halves the rejections of a vehicle at rest."""
 
 
 class StepLimits(NamedTuple):
@@ -30,11 +32,15 @@ def step_limits(settings: MasterSettings) -> StepLimits:
     return StepLimits(in_ns(settings.min_interval), in_ns(settings.max_interval), settings.tolerance)
 
 
-def judge(interval: int, estimate: float, limits: StepLimits, can_undo: bool = True) -> Verdict:
-    """H' = H·clip(0.9·√(tolerance/estimate), 0.2, 2), within the limits; the estimate is of second order in H. NaN: there is none."""
+def judge(interval: int, estimate: float, limits: StepLimits, can_undo: bool = True, settling: bool = False) -> Verdict:
+    """H' = H·clip(0.9·√(tolerance/estimate), 0.2, 2), within the limits; the estimate is of second order in H. NaN: there is none.
+
+    `settling`: a rejection was not long ago, so 1 takes the place of 2.
+    """
     if isnan(estimate):
         return Verdict(True, False, limits.maximum)
-    factor = GROW if estimate <= 0.0 else min(GROW, max(SHRINK, SAFETY * sqrt(limits.tolerance / estimate)))
+    grow = 1.0 if settling else GROW
+    factor = grow if estimate <= 0.0 else min(grow, max(SHRINK, SAFETY * sqrt(limits.tolerance / estimate)))
     proposed = min(limits.maximum, max(limits.minimum, int(interval * factor)))
     if estimate <= limits.tolerance:
         return Verdict(True, False, proposed)

@@ -10,7 +10,7 @@ import numpy as np
 
 from orchestrator.errors import StepError
 from orchestrator.master.estimate import ModelEstimate, MotionEstimate, larger
-from orchestrator.master.judge import StepLimits, fit_to_stop, halve, judge, step_limits
+from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, halve, judge, step_limits
 from orchestrator.master.plan import Job, Phase, make_plan
 from orchestrator.master.ports import motion_ports
 from orchestrator.master.recorder import Ledger, Recorder
@@ -38,6 +38,7 @@ class Master:
         self.warnings: list[str] = []
         self.unresolved = 0
         self.wall_time = 0.0
+        self._settling = 0
         self.stop_requested = False
         """Set it (from a signal handler, say) to end after the present step."""
         self._everyone = list(range(len(system.slaves)))
@@ -104,26 +105,35 @@ class Master:
         interval = wanted
         while True:
             interval = fit_to_stop(interval, self._stop - self._time, self.limits)
-            failed = self._attempt(interval)
-            estimate, limit = (nan, "") if failed is not None else self._estimate(interval)
-            if failed is None:
-                verdict = judge(interval, estimate, self.limits, can_undo=not self._model_is_late)
-                if verdict.accepted:
-                    failed = self._finish(interval)
-            if failed is not None:
-                interval = self._shrink_after_discard(interval, failed)
+            refused = self._attempt(interval)
+            if refused is None:
+                verdict, estimate, limit = self._judged(interval)
+                refused = self._finish(interval) if verdict.accepted else None
+            if refused is not None:
+                interval = self._shrink_after_discard(interval, refused)
                 continue
             if self._model_is_late:
-                self._model.measure()
-                estimate, limit = larger((estimate, limit), self._model.estimate(interval / NANOSECONDS))
-                verdict = judge(interval, estimate, self.limits, can_undo=False)
-            self._note(interval, estimate, verdict.accepted, self._what_limits(interval, limit, verdict.next_interval))
+                verdict, estimate, limit = self._judged(interval, late=True)
+            self._note(interval, estimate, verdict.accepted, self._what_limits(interval, limit, verdict))
             if verdict.accepted:
                 self.unresolved += verdict.unresolved
+                self._settling = max(0, self._settling - 1)
                 self._accept(interval)
                 return verdict.next_interval
+            self._settling = SETTLING
             self._undo()
             interval = verdict.next_interval
+
+    def _judged(self, interval: int, late: bool = False) -> tuple[Verdict, float, str]:
+        """The verdict with the estimate and the port it comes from. `late`: the models are measured after what cannot be undone."""
+        self._check_finite()
+        length = interval / NANOSECONDS
+        estimate = self._motion.estimate(length) if self.settings.passes > 1 else (nan, "")
+        if late:
+            self._model.measure()
+        if late or not self._model_is_late:
+            estimate = larger(self._model.estimate(length), estimate)
+        return judge(interval, estimate[0], self.limits, not late, self._settling > 0), *estimate
 
     def _attempt(self, interval: int) -> Job | None:
         """All passes over one interval. Returns the unit that refused it, if one did."""
@@ -152,13 +162,6 @@ class Master:
                 return job
         return None
 
-    def _estimate(self, interval: int) -> tuple[float, str]:
-        self._check_finite()
-        length = interval / NANOSECONDS
-        model = (nan, "") if self._model_is_late else self._model.estimate(length)
-        motion = self._motion.estimate(length) if self.settings.passes > 1 else (nan, "")
-        return larger(model, motion)
-
     def _finish(self, interval: int) -> Job | None:
         """Units stepped once. Returns the unit that refused, if one did and everything can be undone."""
         refused = self._sweep(self._after, interval)
@@ -178,6 +181,7 @@ class Master:
     def _shrink_after_discard(self, interval: int, refused: Job) -> int:
         name = refused.slave.name
         self._note(interval, nan, False, f"discard by {name}")
+        self._settling = SETTLING
         shorter = halve(interval, self.limits)
         if shorter is None:
             raise StepError(
@@ -211,13 +215,11 @@ class Master:
         passes = self.settings.passes if self._first else 1
         self.log.append(Attempt(self._time / NANOSECONDS, interval / NANOSECONDS, passes, estimate, accepted, limit))
 
-    def _what_limits(self, interval: int, port: str, following: int) -> str:
-        """What kept this interval, or the next, from being longer."""
-        if self._time + interval == self._stop and following >= interval:
+    def _what_limits(self, interval: int, port: str, verdict: Verdict) -> str:
+        """What keeps the next interval from being longer: the port with the largest estimate, unless it asks for no limit."""
+        if verdict.accepted and self._time + interval == self._stop:
             return "stop time"
-        if following >= self.limits.maximum:
-            return "max interval"
-        return "min interval" if following <= self.limits.minimum and not port else port
+        return "max interval" if verdict.next_interval >= self.limits.maximum else port
 
     def _rolls_back(self, unit: int) -> bool:
         slave, board = self.system.slaves[unit], self.plan.board

@@ -25,7 +25,7 @@ class Attempt(NamedTuple):
     """The error estimate, m; NaN where the system offers none."""
     accepted: bool
     limit: str
-    """What limited the interval: a port ("soil+Z.pad"), "max interval", "min interval", "stop time", or "discard by UNIT"."""
+    """What kept the next interval from being longer: a port ("soil+Z.pad"), "max interval", "stop time", or "discard by UNIT"."""
 
 
 @dataclass(frozen=True)

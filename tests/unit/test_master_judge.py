@@ -3,6 +3,7 @@
 from math import nan
 
 import pytest
+
 from orchestrator.master.judge import StepLimits, fit_to_stop, halve, judge
 from orchestrator.master.settings import in_ns
 
@@ -26,6 +27,11 @@ def test_a_rejected_step_is_always_retried_with_a_shorter_one() -> None:
     verdict = judge(1_000_000, 1.0000001e-5, LIMITS)
     assert not verdict.accepted
     assert verdict.next_interval < 1_000_000
+
+
+def test_soon_after_a_rejection_the_interval_does_not_grow_but_may_shrink() -> None:
+    assert judge(1_000_000, 1e-9, LIMITS, settling=True).next_interval == 1_000_000
+    assert judge(1_000_000, 1e-5, LIMITS, settling=True).next_interval == 900_000
 
 
 def test_the_smallest_interval_is_accepted_but_counts_as_unresolved() -> None:

@@ -8,6 +8,7 @@ the next term of the error series at these intervals.
 import numpy as np
 import pytest
 from master_samples import error_of, fixed, oscillator, spring
+
 from orchestrator.master.settings import MasterSettings
 
 

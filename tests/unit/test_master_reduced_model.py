@@ -10,8 +10,8 @@ of a nonlinear leg would, is where estimate, rejection and second pass must show
 from typing import Any
 
 import numpy as np
-import pytest
 from master_samples import prepared
+
 from orchestrator.master.function_unit import FunctionUnit
 from orchestrator.master.master import Master
 from orchestrator.master.settings import MasterSettings

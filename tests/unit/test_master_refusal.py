@@ -4,6 +4,7 @@ from math import nan
 
 import pytest
 from master_samples import fixed, links, mass, oscillator, prepared, spring
+
 from orchestrator.errors import StepError
 from orchestrator.master.function_unit import FunctionUnit
 from orchestrator.master.settings import MasterSettings
