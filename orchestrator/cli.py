@@ -34,7 +34,8 @@ def run(
 ) -> None:
     """Run a scenario and write its results."""
     from orchestrator import results  # slow to import, and only needed here
-    from orchestrator.simulation import Simulation, draw_up, fault, read_scenario
+    from orchestrator.blueprint import draw_up, read_scenario
+    from orchestrator.simulation import Simulation, fault
 
     path = find_scenario(scenario)
     changes: dict[str, Any] = {} if stop_time is None else {"stop_time": stop_time}
@@ -61,8 +62,8 @@ def run(
 @app.command()
 def show(scenario: ScenarioName, overrides: Overrides = None) -> None:
     """Show units, ports, connections and parameters without running anything."""
+    from orchestrator.blueprint import draw_up, read_scenario
     from orchestrator.scenario.show import overview
-    from orchestrator.simulation import draw_up, read_scenario
 
     path = find_scenario(scenario)
     console = Console()

@@ -3,68 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.errors import OrchestratorError, RunError, TrustError, UnitError, nearest
-from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.master.master import Master
 from orchestrator.master.result import RunResult, UnitRecord
 from orchestrator.master.settings import MasterSettings
 from orchestrator.master.slave import Interface, Kind, Slave, Value
 from orchestrator.master.start import solve_start
-from orchestrator.master.system import Link, PortPair, System
-from orchestrator.results.schema import read as read_results_table
-from orchestrator.scenario.expand import Scenario, expand
-from orchestrator.scenario.locate import find_fmu, fmu_folder
+from orchestrator.master.system import System
+from orchestrator.master.trust import distrust
 from orchestrator.scenario.model import StartTable
-from orchestrator.scenario.parameters import SETTABLE, start_values
-from orchestrator.scenario.read import Tree, check_table, merge, read_table
-from orchestrator.scenario.record import matching_outputs
-from orchestrator.scenario.wiring import Wiring
+from orchestrator.scenario.parameters import SETTABLE
 
 Progress = Callable[[float], None]
-
-
-@dataclass
-class Blueprint:
-    """A checked system, before any binary is loaded."""
-
-    scenario: Scenario
-    path: Path | None
-    interfaces: dict[str, Interface]
-    links: list[Link]
-    pairs: list[PortPair]
-    values: list[dict[str, Value]]
-    recorded: list[list[str]]
-    zero: list[list[str]] = field(default_factory=list)
-    """Outputs of the start condition, per unit."""
-
-
-def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None) -> Scenario:
-    """The scenario said out in full; `changes` are merged over the file (e.g. {"stop_time": 2.0})."""
-    tree = merge(read_table(path), changes or {})
-    return expand(check_table(tree, path.name), path.name, overrides)
-
-
-def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
-    """Every check that needs only the units' descriptions."""
-    read_results_table(scenario.table.results, f"{scenario.where}: results")
-    folder = fmu_folder(scenario.table.fmus, path)
-    read: dict[Path, Interface] = {}
-    interfaces: dict[str, Interface] = {}
-    for unit in scenario.units:
-        fmu = find_fmu(unit.fmu, folder, f"{scenario.where}: units.{unit.name}")
-        interfaces[unit.name] = read[fmu] = read.get(fmu) or read_interface(fmu)
-    values = [start_values(f"{scenario.where}: {u.name}", interfaces[u.name], u.parameters) for u in scenario.units]
-    wiring = Wiring(interfaces, scenario.where, scenario.table.master.slopes)
-    for connection in scenario.connections:
-        wiring.connect(connection)
-    recorded = matching_outputs(scenario.record, interfaces, f"{scenario.where}: record.variables") if scenario.record else []
-    zero = matching_outputs(scenario.zero, interfaces, f"{scenario.where}: start.zero") if scenario.zero else []
-    return Blueprint(scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero)
 
 
 class Simulation:
@@ -139,7 +94,7 @@ class Simulation:
         master, table, scenario = self.master, self.blueprint.scenario.table, self.blueprint.scenario
         accepted = sum(row.accepted for row in master.log)
         interrupted = not master.complete and not message
-        trust = "" if message or interrupted else self._distrust(accepted)
+        trust = "" if message or interrupted else distrust(master, self.blueprint.scenario.where)
         if interrupted:
             message = "interrupted by the user; everything up to there is kept"
         shown = {f"{u}.{name}": i.variables[name] for u, i in self.blueprint.interfaces.items() for name in i.variables}
@@ -171,18 +126,6 @@ class Simulation:
             unit_messages=[f"{slave.name}: {text}" for slave in self.system.slaves for text in slave.messages],
             paper=table.paper,
             results=table.results,
-        )
-
-    def _distrust(self, accepted: int) -> str:
-        """Why the run is not to be trusted; empty when it is."""
-        unresolved, settings = self.master.unresolved, self.master.settings
-        if unresolved <= settings.unresolved_limit * accepted:
-            return ""
-        worst = max((row for row in self.master.log if row.accepted and row.estimate == row.estimate), key=lambda row: row.estimate)
-        return (
-            f"{self.blueprint.scenario.where}: {unresolved} of {accepted} steps missed the tolerance {settings.tolerance:g} m"
-            f" at the smallest interval (worst {worst.estimate:.3g} m at {worst.limit}, t = {worst.time:.6g} s),"
-            f" at most {settings.unresolved_limit:.2%} may; lower master.min_interval ({settings.min_interval:g} s) or raise the tolerance"
         )
 
     def _unit_record(self, place: int) -> UnitRecord:

@@ -2,6 +2,7 @@
 
     ports with a model:   H·max(|Δv|, 0.3 m·|Δω|),  Δ = what the model's owner reached − what the partner predicted
     other motion:         H·max(|Δv|, 4 m·|Δω|),    Δ = last pass − the pass before
+    motion held over H:   H/2·max(|Δv|, 4 m·|Δω|),  Δ = end − start, where explicit coupling is all there is
 
 The partner's prediction in a pass already contains the mismatch it was given in that pass; the mismatch accumulates what is still missed.
 """
@@ -86,6 +87,23 @@ class MotionEstimate:
             return nan, ""
         speed, label = self._norms.largest(self._board.values[self._places] - self._before)
         return interval * speed, label
+
+
+class HeldEstimate:
+    """Over the ports whose motion is held over the interval, because a side cannot be repeated."""
+
+    def __init__(self, board: Board, ports: Sequence[MotionPort], lever: float) -> None:
+        self._board = board
+        self.count = len(ports)
+        self._norms = Norms([port.label for port in ports], lever)
+        self._now = _places(board, [(port.unit, port.names) for port in ports])
+        self._start = np.where(self._now == board.zero, board.zero, self._now - len(board.names))
+
+    def estimate(self, interval: float) -> tuple[float, str]:
+        if not self.count:
+            return nan, ""
+        speed, label = self._norms.largest(self._board.values[self._now] - self._board.values[self._start])
+        return 0.5 * interval * speed, label
 
 
 def larger(first: tuple[float, str], second: tuple[float, str]) -> tuple[float, str]:

@@ -6,19 +6,18 @@ from collections.abc import Callable
 from math import nan
 from time import perf_counter
 
-import numpy as np
-
 from orchestrator.errors import StepError
-from orchestrator.master.estimate import ModelEstimate, MotionEstimate, larger
+from orchestrator.master.checks import check_finite, truly_rolls_back
+from orchestrator.master.estimate import HeldEstimate, ModelEstimate, MotionEstimate, larger
 from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, halve, judge, step_limits
 from orchestrator.master.plan import Job, Phase, make_plan
-from orchestrator.master.ports import motion_ports
+from orchestrator.master.ports import held_ports, motion_ports
 from orchestrator.master.recorder import Ledger, Recorder
 from orchestrator.master.result import Attempt
 from orchestrator.master.roles import repeated_units
 from orchestrator.master.settings import NANOSECONDS, MasterSettings, in_ns
 from orchestrator.master.slave import Status
-from orchestrator.master.start import Values, assemble, initialise, rolls_back
+from orchestrator.master.start import Values, assemble, initialise
 from orchestrator.master.system import System
 
 StepListener = Callable[[float], None]
@@ -56,9 +55,10 @@ class Master:
 
     def prepare(self) -> None:
         """Test claims of rollback, and settle from that who is stepped how. After `initialise`."""
-        system, board = self.system, self.plan.board
-        self._check_finite()
-        self.rollback = [self._rolls_back(unit) for unit in self._everyone]
+        system = self.system
+        check_finite(self.plan, self._time)
+        probe = self.limits.maximum
+        self.rollback = [truly_rolls_back(self.plan, unit, self._time, probe, self.warnings) for unit in self._everyone]
         eligible = [can and slave.name not in system.once for can, slave in zip(self.rollback, system.slaves, strict=True)]
         self.repeated = repeated_units(len(system.slaves), system.links, eligible)
         loop = [unit for unit in self._everyone if self.repeated[unit]]
@@ -67,18 +67,36 @@ class Master:
         self._again = self.plan.jobs(Phase.AGAIN, loop, self.repeated)
         self._after = self.plan.jobs(Phase.AFTER, rest, self.repeated)
         self._savers = [slave for slave, can in zip(system.slaves, self.rollback, strict=True) if can]
-        inner = [self.repeated[p.owner] and self.repeated[p.partner] for p in self.plan.reduced]
-        # With no repeated port at all, the models are still measured, after the units that are stepped once.
-        self._model_is_late = not any(inner) and bool(inner)
-        self._model = ModelEstimate(board, self.plan.reduced, inner if any(inner) else [True] * len(inner), self.settings.model_lever)
-        if any(inner) and not all(inner):
-            label = self.plan.reduced[inner.index(False)].label
-            self.warnings.append(f"{label}: a unit there is stepped once per accepted step, so its model gives no estimate")
-        self._motion = MotionEstimate(board, motion_ports(system, self.repeated), self.settings.motion_lever)
-        if loop and not (self._model.count or (self._motion.count and self.settings.passes > 1)):
-            self.warnings.append("no port gives an error estimate: every interval is max_interval; check by halving it")
+        self._choose_estimates()
+        self._fix_interval()
         for slave in system.slaves:
             slave.steps, slave.seconds = 0, 0.0
+
+    def _choose_estimates(self) -> None:
+        """What there is to judge a step by; a warning where there is nothing."""
+        system, board, settings, reduced = self.system, self.plan.board, self.settings, self.plan.reduced
+        inner = [self.repeated[p.owner] and self.repeated[p.partner] for p in reduced]
+        # With no repeated port at all, the models are still measured, after the units that are stepped once.
+        self._model_is_late = not any(inner) and bool(inner)
+        self._model = ModelEstimate(board, reduced, inner if any(inner) else [True] * len(inner), settings.model_lever)
+        if any(inner) and not all(inner):
+            label = reduced[inner.index(False)].label
+            self.warnings.append(f"{label}: a unit there is stepped once per accepted step, so its model gives no estimate")
+        in_loop = repeated_units(len(system.slaves), system.links, [True] * len(system.slaves))
+        self._motion = MotionEstimate(board, motion_ports(system, self.repeated), settings.motion_lever)
+        self._held = HeldEstimate(board, held_ports(system, self.repeated, in_loop), settings.motion_lever)
+        judged = self._model.count or self._held.count or (self._motion.count and settings.passes > 1)
+        asked = all(slave.name in system.once for slave, loop in zip(system.slaves, in_loop, strict=True) if loop)
+        if any(in_loop) and not judged and not asked:
+            self.warnings.append("no port gives an error estimate: every interval is max_interval; check by halving it")
+
+    def _fix_interval(self) -> None:
+        """A unit that takes one step size only sets it for all: nothing can then be rejected."""
+        for slave in self.system.slaves:
+            if not slave.interface.capabilities.get("canHandleVariableCommunicationStepSize", True):
+                self.limits = self.limits._replace(minimum=self.limits.maximum)
+                self.warnings.append(f"{slave.name}: takes one step size only, so every interval is {self.settings.max_interval:g} s")
+                return
 
     def run(self, on_step: StepListener | None = None) -> None:
         """To the stop time. Raises RunError when a unit fails; what was recorded stays."""
@@ -112,7 +130,7 @@ class Master:
             if refused is not None:
                 interval = self._shrink_after_discard(interval, refused)
                 continue
-            if self._model_is_late:
+            if self._model_is_late or self._held.count:
                 verdict, estimate, limit = self._judged(interval, late=True)
             self._note(interval, estimate, verdict.accepted, self._what_limits(interval, limit, verdict))
             if verdict.accepted:
@@ -125,12 +143,14 @@ class Master:
             interval = verdict.next_interval
 
     def _judged(self, interval: int, late: bool = False) -> tuple[Verdict, float, str]:
-        """The verdict with the estimate and the port it comes from. `late`: the models are measured after what cannot be undone."""
-        self._check_finite()
+        """The verdict with the estimate and the port it comes from; `late`, after units were stepped that may not be undone."""
+        check_finite(self.plan, self._time)
         length = interval / NANOSECONDS
         estimate = self._motion.estimate(length) if self.settings.passes > 1 else (nan, "")
         if late:
-            self._model.measure()
+            estimate = larger(estimate, self._held.estimate(length))
+            if self._model_is_late:
+                self._model.measure()
         if late or not self._model_is_late:
             estimate = larger(self._model.estimate(length), estimate)
         return judge(interval, estimate[0], self.limits, not late, self._settling > 0), *estimate
@@ -167,7 +187,7 @@ class Master:
         refused = self._sweep(self._after, interval)
         if refused is None:
             if self._after:
-                self._check_finite()
+                check_finite(self.plan, self._time)
             return None
         stepped = self._after[: self._after.index(refused) + 1]
         stuck = [job.slave.name for job in stepped if not self.rollback[job.unit]]
@@ -208,7 +228,7 @@ class Master:
         if self.recorder.is_due(elapsed, last or self.stop_requested):
             for slave in self.system.slaves:
                 slave.observe()
-            self._check_finite()
+            check_finite(self.plan, self._time)
             self.recorder.record(self._time / NANOSECONDS, elapsed)
 
     def _note(self, interval: int, estimate: float, accepted: bool, limit: str) -> None:
@@ -217,32 +237,9 @@ class Master:
 
     def _what_limits(self, interval: int, port: str, verdict: Verdict) -> str:
         """What keeps the next interval from being longer: the port with the largest estimate, unless it asks for no limit."""
-        if verdict.accepted and self._time + interval == self._stop:
+        if verdict.accepted and not verdict.unresolved and self._time + interval == self._stop:
             return "stop time"
-        return "max interval" if verdict.next_interval >= self.limits.maximum else port
-
-    def _rolls_back(self, unit: int) -> bool:
-        slave, board = self.system.slaves[unit], self.plan.board
-        if not slave.interface.claims("canGetAndSetFMUstate"):
-            return False
-        begin = board.offset[unit]
-        y = board.now[begin : begin + sum(owner == unit for owner, _ in board.names)]
-        if rolls_back(slave, y, self._time / NANOSECONDS, self.limits.maximum / NANOSECONDS):
-            return True
-        self.warnings.append(f"{slave.name}: claims rollback but does not return to the same bits; stepped once per accepted step instead")
-        return False
-
-    def _check_finite(self) -> None:
-        now = self.plan.board.now
-        if np.isfinite(now.sum()):
-            return
-        for place in np.flatnonzero(~np.isfinite(now)):
-            unit, name = self.plan.board.names[place]
-            slave = self.system.slaves[unit]
-            raise StepError(
-                f"{slave.name}: {name} is {now[place]} near t = {self._time / NANOSECONDS:.9g} s, expects a finite number;"
-                f" {'it said: ' + slave.messages[-1] if slave.messages else 'it gave no message'}"
-            )
+        return "max interval" if verdict.next_interval >= self.limits.maximum and not verdict.unresolved else port
 
 
 def _last(job: Job) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from orchestrator.master.slave import Interface
-from orchestrator.master.system import PortPair, System
+from orchestrator.master.system import System
 
 MOTION = ("velocity", "angular_velocity")
 EMPTY = ("", "", "")
@@ -63,25 +64,39 @@ def reduced_ports(system: System) -> list[ReducedPort]:
 
 def motion_ports(system: System, repeated: list[bool]) -> list[MotionPort]:
     """Ports that feed motion from one repeated unit to another and carry no reduced interface model of their own."""
-    return [
-        MotionPort(system.label(unit, port), unit, _six(system.slaves[unit].interface, f"{port}." if port else "", "output"))
-        for unit in range(len(system.slaves))
-        if repeated[unit]
-        for port in _motion_ports_of(system, unit, repeated)
-    ]
+    return _motion_ports(system, lambda source, target: repeated[source] and repeated[target])
+
+
+def held_ports(system: System, repeated: list[bool], in_loop: list[bool]) -> list[MotionPort]:
+    """Ports that feed motion round a loop in which one side is stepped once, though nobody asked for that: explicit coupling."""
+    asked = [slave.name in system.once for slave in system.slaves]
+
+    def held(source: int, target: int) -> bool:
+        both_repeated = repeated[source] and repeated[target]
+        return in_loop[source] and in_loop[target] and not both_repeated and not asked[source] and not asked[target]
+
+    return _motion_ports(system, held)
 
 
 def motion_stems(system: System, unit: int) -> list[str]:
     """Stems of the motion this unit gives, whether or not all of it is taken."""
-    ports = _motion_ports_of(system, unit, [True] * len(system.slaves))
+    ports = _ports_giving_motion(system, unit, lambda source, target: True)
     return [f"{port}.{member}" if port else member for port in ports for member in MOTION]
 
 
-def _motion_ports_of(system: System, unit: int, repeated: list[bool]) -> list[str]:
+def _motion_ports(system: System, wanted: Callable[[int, int], bool]) -> list[MotionPort]:
+    return [
+        MotionPort(system.label(unit, port), unit, _six(system.slaves[unit].interface, f"{port}." if port else "", "output"))
+        for unit in range(len(system.slaves))
+        for port in _ports_giving_motion(system, unit, wanted)
+    ]
+
+
+def _ports_giving_motion(system: System, unit: int, wanted: Callable[[int, int], bool]) -> list[str]:
     interface = system.slaves[unit].interface
     ports: dict[str, None] = {}
     for link in system.links:
-        if link.source_unit == unit and repeated[link.target_unit]:
+        if link.source_unit == unit and wanted(unit, link.target_unit):
             port, _, member = link.source.partition("[")[0].rpartition(".")
             if member in MOTION and not _offers_model(interface, port):
                 ports[port] = None
@@ -98,6 +113,3 @@ def _six(interface: Interface, prefix: str, causality: str) -> tuple[str, ...]:
         elements = tuple(v.name for v in interface.elements(prefix + member, causality))[:3]
         names += elements + EMPTY[len(elements) :]
     return names
-
-
-__all__ = ["MotionPort", "PortPair", "ReducedPort", "motion_ports", "motion_stems", "reduced_ports"]

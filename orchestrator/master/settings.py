@@ -29,5 +29,7 @@ class MasterSettings:
     """m: the same for the other ports that give motion."""
     unresolved_limit: float = 0.01
     """Share of accepted steps that may miss the tolerance at the smallest interval before the run is not trusted."""
+    ledger_limit: float = 0.05
+    """Share of the work exchanged over a connection that its two sides may disagree by before the run is not trusted."""
     record_interval: float = 0.0
     """s; rows are accepted steps, the first at or after each multiple; 0 records every accepted step."""

@@ -1,4 +1,4 @@
-"""Before the first step: start values, consistent outputs, the solved initial parameter, and the truth of claimed rollback."""
+"""Before the first step: start values, consistent outputs, and the solved initial parameter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from orchestrator.errors import UnitError
 from orchestrator.master.plan import Job, Plan
-from orchestrator.master.slave import Slave, Status, Value, Vector
+from orchestrator.master.slave import Value, Vector
 
 Values = Sequence[Mapping[str, Value]]
 
@@ -43,26 +43,6 @@ def initialise(plan: Plan, jobs: Sequence[Job], start: float, stop: float, value
         assemble(board.values, job, 0.0)
         job.slave.begin()
         board.start[:] = board.now
-
-
-def rolls_back(slave: Slave, y: Vector, time: float, interval: float) -> bool:
-    """Whether what the unit claims is true: save, step, restore, step again gives the same bits. Leaves the unit as it was."""
-    at_start = y.copy()
-
-    def stepped() -> tuple[Status, bytes]:
-        status = slave.step(time, interval)
-        if status is not Status.DISCARD:
-            slave.observe()
-        outcome = y.tobytes()
-        slave.restore()
-        y[:] = at_start
-        return status, outcome
-
-    slave.save()
-    first = stepped()
-    second = stepped()
-    third = stepped()
-    return first == second == third
 
 
 def solve_start(residual: Callable[[float], float], guess: float, nominal: float, what: str) -> float:

@@ -64,6 +64,7 @@ class MasterTable(Table):
     model_lever: Positive = _DEFAULT.model_lever
     motion_lever: Positive = _DEFAULT.motion_lever
     unresolved_limit: Annotated[float, Field(ge=0.0, le=1.0)] = _DEFAULT.unresolved_limit
+    ledger_limit: Annotated[float, Field(ge=0.0)] = _DEFAULT.ledger_limit
 
     @model_validator(mode="after")
     def _ordered(self) -> MasterTable:

@@ -11,7 +11,7 @@ from rich.text import Text
 from orchestrator.scenario.parameters import settable_stems
 
 if TYPE_CHECKING:
-    from orchestrator.simulation import Blueprint
+    from orchestrator.blueprint import Blueprint
 
 
 def overview(blueprint: Blueprint) -> Iterator[Table | Text]:

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+
 from orchestrator.master.function_unit import FunctionUnit
 from orchestrator.master.master import Master
 from orchestrator.master.settings import MasterSettings

@@ -7,13 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmi_samples import oscillator, sample_fmus
+
+from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.errors import StepError, UnitError
 from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.fmi.unpack import content_hash, unpack
 from orchestrator.master.slave import Binding, Status
 from orchestrator.master.system import System
-from orchestrator.simulation import Simulation, draw_up, read_scenario, run_scenario
+from orchestrator.simulation import Simulation, run_scenario
 
 
 def mass(**values: float) -> tuple[Fmi2Unit, Binding]:

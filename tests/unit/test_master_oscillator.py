@@ -1,8 +1,8 @@
 """Verifies: order of convergence and step control of the master.
 
 Setup: two masses (1 and 2 kg) and a spring as three units with slopes, against e = e₀ cos(ωt), ω² = k (1/m₁ + 1/m₂), over 1.95 periods.
-Tolerance: each pass gains one order over the first (1, then 3 because a mean with its slope is exact to second order); ±0.25 leaves room for
-the next term of the error series at these intervals.
+Tolerance: the first pass is of order 1, the second of 3 because a mean with its slope is exact to second order, each further one gains one;
+±0.25 leaves room for the next term of the error series at these intervals.
 """
 
 import numpy as np
@@ -65,12 +65,30 @@ def test_the_oscillator_repeats_itself_to_the_bit() -> None:
     assert all(np.array_equal(first[name], second[name]) for name in first)
 
 
-def test_an_oscillator_whose_spring_cannot_roll_back_is_stepped_once_and_runs_blind() -> None:
-    master = oscillator(MasterSettings(max_interval=1e-3), spring_unit=spring(rollback=False))
+def test_a_loop_that_cannot_roll_back_is_stepped_once_with_intervals_that_shrink_where_motion_changes() -> None:
+    master = oscillator(MasterSettings(max_interval=2e-3, tolerance=1e-6), spring_unit=spring(rollback=False))
     master.run()
-    assert [slave.steps for slave in master.system.slaves] == [1000, 1000, 1000]
     assert master.repeated == [False, False, False]
+    assert [slave.steps for slave in master.system.slaves] == [len(master.log)] * 3
+    assert all(row.accepted for row in master.log)
+    assert min(row.interval for row in master.log[:-1]) < 5e-4
     assert error_of(master) < 0.01
+
+
+def test_explicit_steps_that_cannot_shrink_count_as_unresolved() -> None:
+    master = oscillator(MasterSettings(max_interval=2e-3, min_interval=2e-3, tolerance=1e-6), spring_unit=spring(rollback=False))
+    master.run()
+    assert master.unresolved > 0.5 * len(master.log)
+
+
+def test_a_unit_of_one_step_size_fixes_the_interval_for_all() -> None:
+    rigid = spring()
+    rigid.interface.capabilities["canHandleVariableCommunicationStepSize"] = False
+    master = oscillator(MasterSettings(max_interval=5e-3, tolerance=1e-7), spring_unit=rigid)
+    master.run()
+    assert {row.interval for row in master.log} == {5e-3}
+    assert any("spring: takes one step size only" in warning for warning in master.warnings)
+    assert master.unresolved > 0
 
 
 def test_a_loop_without_estimate_is_told_to_the_user() -> None:

@@ -3,8 +3,8 @@
 Setup: one dimension. A mass of 1233 kg on a strut (1e6 N/m, 1e4 N s/m) with a pad of 11 kg, 10 mm above a soil that pushes with
 3e5 N/m · depth · (1 + 5 s/m · rate), never pulling; both at 1 m/s down. Cut between pad and soil, where explicit coupling is stable up to
 2m/C = 0.3 ms at 50 mm depth. Against the same equations in one piece.
-Tolerance: 1e-4 of the peak penetration at intervals of 2 ms (measured: 3e-5). A model that misstates the strut by half, as the linearisation
-of a nonlinear leg would, is where estimate, rejection and second pass must show (asserted), so the tests can fail.
+Tolerance: 1e-4 of the peak penetration at intervals of 2 ms (measured: 3e-5). A model that misstates the strut by half, as the
+linearisation of a nonlinear leg would, is where estimate, rejection and second pass must show (asserted), so the tests can fail.
 """
 
 from typing import Any

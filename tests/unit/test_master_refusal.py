@@ -13,7 +13,9 @@ from orchestrator.master.system import Link, System
 COARSE = MasterSettings(max_interval=8e-3, min_interval=1e-3, tolerance=1e9)
 
 
-def clock(name: str = "clock", longest: float = 1.0, refuse_from: float = 9.0, nan_from: float = 9.0, rollback: bool = True) -> FunctionUnit:
+def clock(
+    name: str = "clock", longest: float = 1.0, refuse_from: float = 9.0, nan_from: float = 9.0, rollback: bool = True
+) -> FunctionUnit:
     """Counts its steps; refuses, or gives NaN, as asked."""
 
     def advance(s: dict, u: dict, t: float, h: float) -> dict | None:

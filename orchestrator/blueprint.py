@@ -1,0 +1,57 @@
+"""A scenario checked against the units it names, before any binary is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from orchestrator.fmi.description import read_interface
+from orchestrator.master.slave import Interface, Value
+from orchestrator.master.system import Link, PortPair
+from orchestrator.results.schema import read as read_results_table
+from orchestrator.scenario.expand import Scenario, expand
+from orchestrator.scenario.locate import find_fmu, fmu_folder
+from orchestrator.scenario.parameters import start_values
+from orchestrator.scenario.read import Tree, check_table, merge, read_table
+from orchestrator.scenario.record import matching_outputs
+from orchestrator.scenario.wiring import Wiring
+
+
+@dataclass
+class Blueprint:
+    """A checked system, before any binary is loaded."""
+
+    scenario: Scenario
+    path: Path | None
+    interfaces: dict[str, Interface]
+    links: list[Link]
+    pairs: list[PortPair]
+    values: list[dict[str, Value]]
+    recorded: list[list[str]]
+    zero: list[list[str]] = field(default_factory=list)
+    """Outputs of the start condition, per unit."""
+
+
+def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None) -> Scenario:
+    """The scenario said out in full; `changes` are merged over the file (e.g. {"stop_time": 2.0})."""
+    tree = merge(read_table(path), changes or {})
+    return expand(check_table(tree, path.name), path.name, overrides)
+
+
+def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
+    """Every check that needs only the units' descriptions."""
+    read_results_table(scenario.table.results, f"{scenario.where}: results")
+    folder = fmu_folder(scenario.table.fmus, path)
+    read: dict[Path, Interface] = {}
+    interfaces: dict[str, Interface] = {}
+    for unit in scenario.units:
+        fmu = find_fmu(unit.fmu, folder, f"{scenario.where}: units.{unit.name}")
+        interfaces[unit.name] = read[fmu] = read.get(fmu) or read_interface(fmu)
+    values = [start_values(f"{scenario.where}: {u.name}", interfaces[u.name], u.parameters) for u in scenario.units]
+    wiring = Wiring(interfaces, scenario.where, scenario.table.master.slopes)
+    for connection in scenario.connections:
+        wiring.connect(connection)
+    recorded = matching_outputs(scenario.record, interfaces, f"{scenario.where}: record.variables") if scenario.record else []
+    zero = matching_outputs(scenario.zero, interfaces, f"{scenario.where}: start.zero") if scenario.zero else []
+    return Blueprint(scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero)
