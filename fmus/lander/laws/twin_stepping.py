@@ -17,7 +17,8 @@ from .vectors import add, apply, apply_transposed, axpy, cross, from_rotation_ve
 Array = NDArray[np.float64]
 ERROR_CONSTANT = 0.0404  # of SDIRK2: 3 γ² - 2 γ³ - 1/6
 SMALLEST = 1e-9  # s
-ENGINE, SOIL, STRUTS, BALL = range(4)  # columns of the powers; of the ledger: the body's row 0, then a row a leg
+ENGINE = 0  # column of the ledger in row 0, the body's
+SOIL, STRUTS, BALL = range(3)  # columns in the rows of the legs
 
 
 class Settings(NamedTuple):

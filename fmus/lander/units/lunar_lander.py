@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from ..laws.footpad import COLUMNS, POINTS, Footpad, deepest
 from ..laws.rigid_body import Body, BodyState, inertia_matrix
-from ..laws.soil import Soil
-from ..laws.surface import Surface
 from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Engine, Flight, Vehicle
 from ..laws.twin_exchange import LEG_REPORT, show
 from ..laws.twin_stepping import Settings, integrate, start_accelerations, start_flight
@@ -23,10 +21,15 @@ LEGS = 4
 Array = NDArray[np.float64]
 
 
-def parameters_of(variables: Iterable[Record], without: Iterable[str], prefix: str = "") -> tuple[Record, ...]:
-    """The parameters another unit declares, under another name: declared once, beside their number."""
+def parameters_of(variables: Iterable[Record], without: Iterable[str]) -> tuple[Record, ...]:
+    """The parameters another unit declares: declared once, beside their number."""
     left_out = set(without)
-    return tuple(replace(v, name=prefix + v.name) for v in variables if v.causality == "parameter" and v.name not in left_out)
+    return tuple(v for v in variables if v.causality == "parameter" and v.name not in left_out)
+
+
+def for_each_soil(record: Record) -> Record:
+    """A soil's parameter once for each leg: `soil.friction[1..4]`; vectors by rows."""
+    return replace(record, name=f"soil.{record.name}", start=record.start * LEGS, vector=True)
 
 
 def leg_outputs(k: int) -> tuple[Record, ...]:
@@ -58,7 +61,7 @@ class LunarLander(Unit):
 
     Unknowns are the accelerations of body, ball joints and pads (30); SDIRK2 with Newton, each leg eliminated into the body; the step follows
     the local error of the velocities (`tolerance`, m/s a step). It shares the laws with the units, not the coupling: the co-simulation must equal it.
-    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soilK.*`). Parameters are those of VehicleBody, GearLeg and RegolithContact.
+    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg). Parameters are those of VehicleBody, GearLeg and RegolithContact.
     """
 
     description = "The whole lander in one unit: what the co-simulation must equal."
@@ -68,10 +71,9 @@ class LunarLander(Unit):
         *parameters_of(gear_leg.GearLeg.variables, ("azimuth", "gravity", "vehicle_mass", "longest_substep")),
         parameter("azimuth", (0.0, 0.5 * pi, pi, -0.5 * pi), "rad", "of legs 1 to 4 about B's x axis, from +Z to +Y"),
         *(
-            record
-            for k in range(1, LEGS + 1)
+            for_each_soil(record)
             for record in parameters_of(
-                regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep"), f"soil{k}."
+                regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep")
             )
         ),
         parameter("tolerance", 1e-5, "m/s", "local error of any velocity a step", minimum=1e-9, maximum=1e-2),
@@ -112,14 +114,10 @@ class LunarLander(Unit):
             self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity")
         )
         legs = tuple(gear_leg.leg_of(self, azimuth, self.value("mass")) for azimuth in self["azimuth"].tolist())
-        soils: list[Soil] = []
-        surfaces: list[Surface] = []
-        for k in range(1, LEGS + 1):
-            soil, surface = regolith_contact.soil_of(self, f"soil{k}.")
-            soils.append(soil)
-            surfaces.append(surface)
+        ground = [regolith_contact.soil_of(self, "soil.", k) for k in range(LEGS)]
+        soils, surfaces = tuple(soil for soil, _ in ground), tuple(surface for _, surface in ground)
         pad = Footpad(self.value("footpad_radius"), self.value("footpad_height"))
-        self.vehicle = Vehicle(body, legs, tuple(soils), tuple(surfaces), pad)
+        self.vehicle = Vehicle(body, legs, soils, surfaces, pad)
         self.flight = Flight(
             self["flight.body"],
             self["flight.legs"].reshape(LEGS, LEG_COLUMNS),

@@ -111,12 +111,12 @@ class RegolithContact(Unit):
             self["contact_time"] = time
 
 
-def soil_of(unit: Unit, prefix: str = "") -> tuple[Soil, Surface]:
-    """Soil of one contact point, and the surface, from a unit's parameters (names with `prefix`)."""
+def soil_of(unit: Unit, prefix: str = "", element: int = 0) -> tuple[Soil, Surface]:
+    """Soil of one contact point, and the surface, from the given element of a unit's parameters (names with `prefix`)."""
     share = 1.0 / POINTS
 
     def of(name: str) -> float:
-        return unit.value(prefix + name)
+        return float(unit[prefix + name][element])
 
     soil = Soil(
         int(of("law")),
@@ -130,7 +130,7 @@ def soil_of(unit: Unit, prefix: str = "") -> tuple[Soil, Surface]:
         share * of("plowing"),
         of("slip_velocity"),
     )
-    x, y, z = unit[f"{prefix}ground_origin"].tolist()
+    x, y, z = unit[f"{prefix}ground_origin"].reshape(-1, 3)[element].tolist()
     return soil, inclined_plane(of("ground_slope"), of("ground_azimuth"), (x, y, z))
 
 
