@@ -17,7 +17,10 @@ TIPPED = math.radians(45.0)  # tilt of the body's axis from the vertical
 
 
 def touchdown(channels: Channels, table: ResultsTable) -> dict[str, Any]:
-    """The touchdown's keys of summary.json. A value nobody recorded is None and its column named in `channels.missing`."""
+    """The touchdown's keys of summary.json; strokes are those at rest, which a photograph shows.
+
+    A value nobody recorded is None and its column named in `channels.missing`.
+    """
     body, legs = table.body, table.legs
     return {
         "stable": is_stable(channels, table),
@@ -27,7 +30,12 @@ def touchdown(channels: Channels, table: ResultsTable) -> dict[str, Any]:
         "final_tilt_deg": _degrees(tilt(channels, body)),
         "penetration_m": {leg: channels.final(f"{names.soil}.penetration") for leg, names in legs.items()},
         "skid_m": {leg: channels.final(f"{names.soil}.skid") for leg, names in legs.items()},
-        "strokes_m": {f"{leg}.{strut}": crush(channels, names.leg, strut) for leg, names in legs.items() for strut in STRUTS},
+        "strokes_m": {
+            f"{leg}.{strut}": channels.final(f"{names.leg}.{strut}.stroke") for leg, names in legs.items() for strut in STRUTS
+        },
+        "peak_strokes_m": {
+            f"{leg}.{strut}": channels.final(f"{names.leg}.{strut}.peak_stroke") for leg, names in legs.items() for strut in STRUTS
+        },
         "bottomed": {leg: has_bottomed(channels, names.leg) for leg, names in legs.items()},
     }
 
@@ -41,14 +49,6 @@ def contact_time(channels: Channels, soil: str) -> float | None:
     if gap is None or not (gap <= 0.0).any():
         return None
     return float(channels.times[np.argmax(gap <= 0.0)])
-
-
-def crush(channels: Channels, leg: str, strut: str) -> float | None:
-    """m, what a ruler would find on the strut afterwards: `peak_stroke` (latched), else the largest |`stroke`|."""
-    if f"{leg}.{strut}.peak_stroke" in channels.columns:
-        return channels.final(f"{leg}.{strut}.peak_stroke")
-    stroke = channels.series(f"{leg}.{strut}.stroke")
-    return None if stroke is None else float(np.max(np.abs(stroke)))
 
 
 def has_bottomed(channels: Channels, leg: str) -> bool | None:

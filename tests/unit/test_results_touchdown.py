@@ -8,7 +8,7 @@ from results_samples import LEGS, TABLE, landing
 
 from orchestrator.results.channels import Channels
 from orchestrator.results.schema import ResultsTable
-from orchestrator.results.touchdown import contact_time, crush, touchdown
+from orchestrator.results.touchdown import contact_time, touchdown
 
 NAMES = ResultsTable.model_validate(TABLE)
 
@@ -44,12 +44,12 @@ def test_rates_and_angles_come_out_in_degrees():
     assert high > 0.0
 
 
-def test_a_strut_is_as_short_as_it_ever_was():
-    times = np.array([0.0, 1.0, 2.0])
-    stroke = {"leg.left.stroke": np.array([0.0, -0.05, -0.03])}
-    latched = stroke | {"leg.left.peak_stroke": np.array([0.0, 0.051, 0.051])}
-    assert crush(Channels(times, stroke), "leg", "left") == 0.05
-    assert crush(Channels(times, latched), "leg", "left") == 0.051
+def test_strokes_are_those_at_rest_and_peaks_stand_beside_them():
+    times = landing().times
+    springs_back = np.where(times < times[-1], 0.05, 0.03)
+    summary, _ = summed_up(**{"leg+Z.left.stroke": springs_back, "leg+Z.left.peak_stroke": np.full_like(times, 0.051)})
+    assert summary["strokes_m"]["+Z.left"] == 0.03
+    assert summary["peak_strokes_m"]["+Z.left"] == 0.051
 
 
 def test_keys_name_legs_and_struts():

@@ -25,7 +25,6 @@ from .vectors import (
     outer,
     plus,
     product,
-    scale,
     skew,
     sub,
     times,
@@ -131,7 +130,7 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
         along = axpy(-k, slip, normal)  # how F follows F_n
         plane = plus(identity(1.0), times(-1.0, outer(normal, normal)))
         k_i = plus(times(push.stiffness, outer(along, normal)), times(soil.plowing, plane))
-        turn = times(-(k / soil.friction) ** 2 if soil.friction > 0.0 else 0.0, outer(slip, slip))
+        turn = times(-((k / soil.friction) ** 2) if soil.friction > 0.0 else 0.0, outer(slip, slip))
         c_i = plus(times(push.damping, outer(along, normal)), times(push.force * k, plus(plane, turn)))
         t = with_point(t, k_i, c_i, skew(arm))
     return Wrench(force, torque), t
@@ -185,9 +184,9 @@ def start_memory(surface: Surface, pad: Footpad, motion: PadMotion, memory: Arra
 @jit
 def deepest(memory: Array) -> float:
     """Greatest depth of any point, m; negative while all are above the surface."""
-    depth = memory[0, DEPTH]
+    depth = float(memory[0, DEPTH])
     for i in range(1, POINTS):
-        depth = max(depth, memory[i, DEPTH])
+        depth = max(depth, float(memory[i, DEPTH]))
     return depth
 
 
@@ -202,9 +201,3 @@ def slid(memory: Array) -> float:
 def pad_power(wrench: Wrench, motion: PadMotion) -> float:
     """Power of the soil's wrench on the pad, W."""
     return dot(wrench.force, motion.velocity) + dot(wrench.torque, motion.rate)
-
-
-@jit
-def half_way(w: Wrench, k: float) -> Wrench:
-    """k times the wrench."""
-    return Wrench(scale(k, w.force), scale(k, w.torque))

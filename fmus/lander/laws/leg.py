@@ -29,12 +29,12 @@ from .vectors import (
     norm,
     outer,
     plus,
+    product,
     scale,
     skew,
     sub,
     times,
     transpose,
-    product,
 )
 
 

@@ -1,6 +1,7 @@
 """Integration of one leg over a communication interval: SDIRK2 (Alexander 1977, L-stable, order 2) with Newton and backtracking.
 
-Implicit, because a virgin strut's damping (about 1e6 N s/m on 25 kg) has a rate of 4e4 1/s. The pad's rotation on its ball joint is integrated
+Implicit, because a virgin strut's damping (about 1e6 N s/m on 25 kg) has a rate of 4e4 1/s. The pad's rotation on its ball joint is
+integrated
 beside it: its coupling to the swing is weak, so one block sweep a Newton iteration solves both.
 """
 
@@ -98,7 +99,18 @@ def pad_spin(leg: Leg, torque: Vector, rate: Vector, joint: Vector, h: float) ->
 
 @jit
 def solve_stage(
-    leg: Leg, base: Base, body: Matrix, p0: Vector, v0: Vector, q0: Quaternion, turn0: Vector, w0: Vector, load: PadLoad, crush: Crush, h: float, guess: Vector
+    leg: Leg,
+    base: Base,
+    body: Matrix,
+    p0: Vector,
+    v0: Vector,
+    q0: Quaternion,
+    turn0: Vector,
+    w0: Vector,
+    load: PadLoad,
+    crush: Crush,
+    h: float,
+    guess: Vector,
 ) -> Stage:
     """One stage: v = v0 + h a, p = p0 + h v, with a from the leg's law at (p, v). h is γ times the substep.
 
@@ -173,9 +185,7 @@ def join(a: Course, b: Course) -> Course:
 @jit
 def load_at(load: PadLoad, t: float) -> PadLoad:
     """The pad's wrench t seconds into the interval."""
-    return PadLoad(
-        axpy(t, load.force_slope, load.force), axpy(t, load.torque_slope, load.torque), load.force_slope, load.torque_slope
-    )
+    return PadLoad(axpy(t, load.force_slope, load.force), axpy(t, load.torque_slope, load.torque), load.force_slope, load.torque_slope)
 
 
 @jit

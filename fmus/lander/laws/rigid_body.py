@@ -108,7 +108,7 @@ def mean_rate(a: BodyRate, b: BodyRate, c: BodyRate, d: BodyRate) -> BodyRate:
 @jit
 def step_body(body: Body, state: BodyState, load: BodyLoad, interval: float, longest: float) -> BodyState:
     """State after `interval` (s), by Runge-Kutta steps of order 4 of at most `longest` (s)."""
-    n = int(ceil(interval / longest - 1e-9))
+    n = ceil(interval / longest - 1e-9)
     h = interval / n
     for i in range(n):
         t = i * h

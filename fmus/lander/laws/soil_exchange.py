@@ -73,7 +73,9 @@ def fit(impulse: Vector, moment: Vector, step: float, out: Array, place: int) ->
 
 
 @jit
-def start_soil(soil: Soil, surface: Surface, pad: Footpad, port: Array, wrench: Array, predicted: Array, report: Array, memory: Array) -> float:
+def start_soil(
+    soil: Soil, surface: Surface, pad: Footpad, port: Array, wrench: Array, predicted: Array, report: Array, memory: Array
+) -> float:
     """Virgin soil under the pad where it is; returns the greatest depth of any point, m."""
     start = read_start(port)
     at = motion_of(start)

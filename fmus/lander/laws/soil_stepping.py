@@ -1,10 +1,12 @@
 """Integration of one footpad against its soil over a communication interval, with the leg as a reduced interface model.
 
-The leg says how its pad will move (coupling.md, scheme B): a = a_f + Y F + A_x (x - x_n - V_b t - A_b t²/2) + A_v (v - v_n - A_b t), and gives the
+The leg says how its pad will move (coupling.md, scheme B): a = a_f + Y F + A_x (x - x_n - V_b t - A_b t²/2) + A_v (v - v_n - A_b t),
+and gives the
 pad's inertia and joint damping. The soil integrates that pad against its own law: SDIRK2 with Newton and backtracking, because the law's
 rate in the residual-sink band reaches 1e7 1/s. Without a model (all zero) the pad goes on at its last velocity. L throughout.
 
-A mismatch of the last pass between leg and model is added to the model's velocity in proportion to time: the points then move as the leg did.
+A mismatch of the last pass between leg and model is added to the model's velocity in proportion to time: the points then move as the
+leg did.
 """
 
 from math import ceil
@@ -122,7 +124,9 @@ def inverse_inertia(model: InterfaceModel, attitude: Matrix) -> Matrix:
 
 
 @jit
-def answers(model: InterfaceModel, start: PadStart, travel: Travel, at: PadMotion, wrench: Wrench, flexible: Matrix, t: float) -> tuple[Vector, Vector]:
+def answers(
+    model: InterfaceModel, start: PadStart, travel: Travel, at: PadMotion, wrench: Wrench, flexible: Matrix, t: float
+) -> tuple[Vector, Vector]:
     """Accelerations of the model under the wrench, m/s2 and rad/s2."""
     away = sub(travel.displacement, axpy(t, model.base_velocity, scale(0.5 * t * t, model.base_acceleration)))
     faster = sub(sub(travel.velocity, start.velocity), scale(t, model.base_acceleration))

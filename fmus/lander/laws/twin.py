@@ -232,7 +232,8 @@ def block(a: Array, i: int, j: int) -> Matrix:
 def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
     """Solve leg i for its unknowns in terms of the body's, and add what remains to the body's equations.
 
-    A y + C β = r with A = [[M + S + K, K_xr], [K_rx, I + K_rr]], C = [[(M_c + K) J], [K_rx J]], J = [1, -[p x]]: K is the soil's, S the struts'.
+    A y + C β = r with A = [[M + S + K, K_xr], [K_rx, I + K_rr]], C = [[(M_c + K) J], [K_rx J]], J = [1, -[p x]]: K is the soil's, S
+    the struts'.
     """
     k_xx, k_xr, k_rx, k_rr = block(b, 6, 0), block(b, 6, 3), block(b, 9, 0), block(b, 9, 3)
     mass, shared, arm = block(b, 0, 0), block(b, 0, 3), block(b, 12, 0)

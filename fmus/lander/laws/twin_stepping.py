@@ -1,4 +1,4 @@
-"""Adaptive integration of the twin: SDIRK2 with the local error from the course of the accelerations, rejection, memories set once a step."""
+"""Adaptive integration of the twin: SDIRK2, local error from the course of the accelerations, rejection, memories set once a step."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from .footpad import PadMotion, deepest, remember, start_memory
 from .leg import Crush, crushed
 from .leg_stepping import GAMMA, start_state
 from .rigid_body import BodyState
-from .twin import CRUSH, LEG_COLUMNS, P, Q, QX, V, VX, W, WX, X, BODY_COLUMNS, Engine, Flight, Vehicle, scratch, stage
+from .twin import BODY_COLUMNS, CRUSH, LEG_COLUMNS, QX, VX, WX, Engine, Flight, P, Q, V, Vehicle, W, X, scratch, stage
 from .vectors import add, apply, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation
 
 Array = NDArray[np.float64]

@@ -25,9 +25,11 @@ class GearLeg(Unit):
 
     The ball joint's position relative to the body is the leg's only coordinate (three stroking freedoms, no constraint); the pad turns on
     its ball joint. Honeycomb: eqs. 1 to 4 of the paper, stages latching, memory per core, saturated damping, bearing friction, stops.
-    SDIRK2 inside, at most `longest_substep` long. The base moves from its pose and twist at the interval's start with the given accelerations.
+    SDIRK2 inside, at most `longest_substep` long. The base moves from its pose and twist at the interval's start with the given
+    accelerations.
 
-    mount is what the leg adds to the rigid undeformed leg, which the body carries: with the strut unloaded and the pad free it is near zero.
+    mount is what the leg adds to the rigid undeformed leg, which the body carries: with the strut unloaded and the pad free it is near
+    zero.
     pad.model_* is the reduced interface model: a = a_f + Y F + A_x (x - x_n - V_b t - A_b t²/2) + A_v (v - v_n - A_b t), frame L.
     Valid for strokes inside the limits of Table 3; beyond, the stops are stiff but finite, and `bottomed` tells.
     """
@@ -77,17 +79,49 @@ class GearLeg(Unit):
         input_("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, slope=True),
         input_("pad.force", (0.0, 0.0, 0.0), "N", "on the pad, frame L", nominal=1e4, slope=True, added=True),
         input_("pad.torque", (0.0, 0.0, 0.0), "N.m", "on the pad about the ball joint, frame L", nominal=1e3, slope=True, added=True),
-        output("mount.force", (0.0, 0.0, 0.0), "N", "on the body, frame B, less the rigid leg's", nominal=1e4, mean=True, slope=True, initially=LOADED),
-        output("mount.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, mean=True, slope=True, initially=LOADED),
+        output(
+            "mount.force",
+            (0.0, 0.0, 0.0),
+            "N",
+            "on the body, frame B, less the rigid leg's",
+            nominal=1e4,
+            mean=True,
+            slope=True,
+            initially=LOADED,
+        ),
+        output(
+            "mount.torque",
+            (0.0, 0.0, 0.0),
+            "N.m",
+            "on the body about B's origin, frame B",
+            nominal=1e4,
+            mean=True,
+            slope=True,
+            initially=LOADED,
+        ),
         output("pad.position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0, initially=POSE),
         output("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0, initially=POSE),
         output("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0, initially=TWIST),
         output("pad.angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0, initially=TWIST),
-        output("pad.model_acceleration", (0.0, 0.0, 0.0), "m/s2", "a_f: of the ball joint without force, frame L", nominal=1.0, initially=LOADED),
+        output(
+            "pad.model_acceleration",
+            (0.0, 0.0, 0.0),
+            "m/s2",
+            "a_f: of the ball joint without force, frame L",
+            nominal=1.0,
+            initially=LOADED,
+        ),
         output("pad.model_mobility", (0.0,) * 9, "1/kg", "Y, by rows, frame L", nominal=0.04, initially=LOADED),
         output("pad.model_stiffness", (0.0,) * 9, "1/s2", "A_x, by rows, frame L", nominal=1e6, initially=LOADED),
         output("pad.model_damping", (0.0,) * 9, "1/s", "A_v, by rows, frame L", nominal=1e4, initially=LOADED),
-        output("pad.model_base_velocity", (0.0, 0.0, 0.0), "m/s", "V_b: of the body's point at the ball joint, frame L", nominal=1.0, initially=TWIST),
+        output(
+            "pad.model_base_velocity",
+            (0.0, 0.0, 0.0),
+            "m/s",
+            "V_b: of the body's point at the ball joint, frame L",
+            nominal=1.0,
+            initially=TWIST,
+        ),
         output("pad.model_base_acceleration", (0.0, 0.0, 0.0), "m/s2", "A_b: of the same point, frame L", nominal=1.0, initially=MOTION),
         output("pad.model_inertia", (0.0, 0.0, 0.0), "kg.m2", "of the pad about its own axes", nominal=1.0, initially=()),
         output("pad.model_joint_damping", 0.0, "N.m.s/rad", "of the ball joint", nominal=100.0, initially=()),

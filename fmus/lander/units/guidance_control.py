@@ -38,10 +38,26 @@ class GuidanceControl(Unit):
         input_("body.position", (0.0, 0.0, 0.0), "m", "origin of B, frame L", nominal=1.0),
         input_("body.velocity", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame L", nominal=1.0),
         *(input_(f"contact{k}", False, "", f"pad or probe {k} touches", boolean=True) for k in CONTACTS),
-        output("engine.force", (0.0, 0.0, 0.0), "N", "on the body, frame B", nominal=1e4, mean=True, slope=True,
-               initially=("thrust_before_contact",)),
-        output("engine.torque", (0.0, 0.0, 0.0), "N.m", "on the body, frame B, about the origin of B", nominal=1e4, mean=True, slope=True,
-               initially=("thrust_before_contact", "thrust_offset")),
+        output(
+            "engine.force",
+            (0.0, 0.0, 0.0),
+            "N",
+            "on the body, frame B",
+            nominal=1e4,
+            mean=True,
+            slope=True,
+            initially=("thrust_before_contact",),
+        ),
+        output(
+            "engine.torque",
+            (0.0, 0.0, 0.0),
+            "N.m",
+            "on the body, frame B, about the origin of B",
+            nominal=1e4,
+            mean=True,
+            slope=True,
+            initially=("thrust_before_contact", "thrust_offset"),
+        ),
         output("engine.thrust", 0.0, "N", "thrust along +X of B", nominal=1e4, initially=("thrust_before_contact",)),
         output("engine.on", False, "", "whether there is thrust", boolean=True, initially=("thrust_before_contact",)),
         state("contact_time", -1.0, "time of first contact"),
@@ -56,11 +72,12 @@ class GuidanceControl(Unit):
         return {"contact2": float(time >= 0.25), "contact4": float(time >= 0.4)}
 
     def prepare(self) -> None:
-        self.corners: Any = thrust_points(self.value("thrust_start"), self.value("decay_time"), self["table_time"], self["table_thrust"],
-                                          int(self.value("table_points")))
+        self.corners: Any = thrust_points(
+            self.value("thrust_start"), self.value("decay_time"), self["table_time"], self["table_thrust"], int(self.value("table_points"))
+        )
 
     def check(self) -> Iterable[str]:
-        times = self["table_time"][:int(self.value("table_points"))]
+        times = self["table_time"][: int(self.value("table_points"))]
         for i in np.flatnonzero(np.diff(times) <= 0.0):
             yield f"table_time[{i + 2}] is {times[i + 1]} s, expects more than table_time[{i + 1}], {times[i]} s"
 

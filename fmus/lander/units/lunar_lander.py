@@ -59,9 +59,12 @@ ENGINE = ("engine.force", "engine.force_added", "engine.torque", "engine.torque_
 class LunarLander(Unit):
     """Body, four legs and their soils assembled from the same laws as the units and integrated as one system, tightly.
 
-    Unknowns are the accelerations of body, ball joints and pads (30); SDIRK2 with Newton, each leg eliminated into the body; the step follows
-    the local error of the velocities (`tolerance`, m/s a step). It shares the laws with the units, not the coupling: the co-simulation must equal it.
-    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg). Parameters are those of VehicleBody, GearLeg and RegolithContact.
+    Unknowns are the accelerations of body, ball joints and pads (30); SDIRK2 with Newton, each leg eliminated into the body; the step
+    follows
+    the local error of the velocities (`tolerance`, m/s a step). It shares the laws with the units, not the coupling: the co-simulation
+    must equal it.
+    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg). Parameters are those of VehicleBody,
+    GearLeg and RegolithContact.
     """
 
     description = "The whole lander in one unit: what the co-simulation must equal."
@@ -72,9 +75,7 @@ class LunarLander(Unit):
         parameter("azimuth", (0.0, 0.5 * pi, pi, -0.5 * pi), "rad", "of legs 1 to 4 about B's x axis, from +Z to +Y"),
         *(
             for_each_soil(record)
-            for record in parameters_of(
-                regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep")
-            )
+            for record in parameters_of(regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep"))
         ),
         parameter("tolerance", 1e-5, "m/s", "local error of any velocity a step", minimum=1e-9, maximum=1e-2),
         parameter("longest_step", 1e-2, "s", "of the integrator", minimum=1e-6),
@@ -110,9 +111,7 @@ class LunarLander(Unit):
             yield str(error)
 
     def prepare(self) -> None:
-        body = Body(
-            self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity")
-        )
+        body = Body(self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity"))
         legs = tuple(gear_leg.leg_of(self, azimuth, self.value("mass")) for azimuth in self["azimuth"].tolist())
         ground = [regolith_contact.soil_of(self, "soil.", k) for k in range(LEGS)]
         soils, surfaces = tuple(soil for soil, _ in ground), tuple(surface for _, surface in ground)

@@ -26,16 +26,30 @@ class RateSensor(Unit):
         parameter("bias", (0.0, 0.0, 0.0), "rad/s", "added to yaw, pitch, roll rate"),
         parameter("scale", 1.0, "1", "factor on all rates"),
         *(input_(f"rates.{axis}", 0.0, "rad/s", f"true {axis} rate, frame B", nominal=0.1, slope=True) for axis in AXES),
-        *(output(f"telemetry.{axis}", 0.0, "rad/s", f"received {axis} rate", nominal=0.1, initially=(
-            f"rates.{axis}", "bias", "scale", "quantum")) for axis in AXES),
+        *(
+            output(
+                f"telemetry.{axis}",
+                0.0,
+                "rad/s",
+                f"received {axis} rate",
+                nominal=0.1,
+                initially=(f"rates.{axis}", "bias", "scale", "quantum"),
+            )
+            for axis in AXES
+        ),
         state("lagged", (0.0, 0.0, 0.0)),
         state("held", (0.0, 0.0, 0.0)),
         state("samples", 0.0, "samples taken since the start; counted, not summed"),
     )
 
     experiment = (0.0, 1.0, 0.01)
-    reference_parameters = (("time_constant", 0.05), ("sample_interval", 0.025), ("quantum", 0.001), ("scale", 1.02),
-                            ("bias", (0.0, 0.01, 0.0)))
+    reference_parameters = (
+        ("time_constant", 0.05),
+        ("sample_interval", 0.025),
+        ("quantum", 0.001),
+        ("scale", 1.02),
+        ("bias", (0.0, 0.01, 0.0)),
+    )
 
     @classmethod
     def stimulus(cls, time: float) -> dict[str, float]:
@@ -52,7 +66,7 @@ class RateSensor(Unit):
         interval = nanoseconds(self.value("sample_interval"))
         now, end = nanoseconds(time - self.start_time), nanoseconds(time + step - self.start_time)
         lagged, held = self["lagged"], self["held"]
-        count = end // interval if interval else 0           # samples due after the first one, which is at the start
+        count = end // interval if interval else 0  # samples due after the first one, which is at the start
         instant = (count * interval - now) * 1e-9
         for i, axis in enumerate(AXES):
             u, k = self.value(f"rates.{axis}"), self.value(f"rates.{axis}_slope")

@@ -20,7 +20,8 @@ class RegolithContact(Unit):
     law 2  rate-independent compaction: plastic flow on K_n δ^p, elastic unloading over the band b, no creep.
     F_t = -μ F_n v/|v| - K_p δ_t against slip and slide. Table 4 is per footpad: a fifth of K_n, C_n and K_p goes to each point.
 
-    The pad is integrated here against the law over each interval, with the leg as reduced interface model (pad.model_*); without a model the
+    The pad is integrated here against the law over each interval, with the leg as reduced interface model (pad.model_*); without a
+    model the
     pad goes on at its last velocity. pad.mismatch_* is what the leg did otherwise in the last pass, and is made good.
     Valid for penetrations of some centimetres, on which Table 4 was fitted; a start deeper than 5 cm is refused.
     """
