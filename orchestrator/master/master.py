@@ -14,7 +14,7 @@ from orchestrator.master.plan import Job, Phase, make_plan
 from orchestrator.master.ports import held_ports, motion_ports
 from orchestrator.master.recorder import Ledger, Recorder
 from orchestrator.master.result import Attempt
-from orchestrator.master.roles import repeated_units
+from orchestrator.master.roles import repeated_units, together
 from orchestrator.master.settings import NANOSECONDS, MasterSettings, in_ns
 from orchestrator.master.slave import Status
 from orchestrator.master.start import Values, assemble, initialise
@@ -59,8 +59,8 @@ class Master:
         check_finite(self.plan, self._time)
         probe = self.limits.maximum
         self.rollback = [truly_rolls_back(self.plan, unit, self._time, probe, self.warnings) for unit in self._everyone]
-        eligible = [can and slave.name not in system.once for can, slave in zip(self.rollback, system.slaves, strict=True)]
-        self.repeated = repeated_units(len(system.slaves), system.links, eligible)
+        able = [can and slave.name not in system.once for can, slave in zip(self.rollback, system.slaves, strict=True)]
+        self.repeated = repeated_units(len(system.slaves), system.links, together(able, self.plan.reduced))
         loop = [unit for unit in self._everyone if self.repeated[unit]]
         rest = [unit for unit in self._everyone if not self.repeated[unit]]
         self._first = self.plan.jobs(Phase.FIRST, loop, self.repeated)
@@ -130,7 +130,7 @@ class Master:
             if refused is not None:
                 interval = self._shrink_after_discard(interval, refused)
                 continue
-            if self._model_is_late or self._held.count:
+            if verdict.accepted and (self._model_is_late or self._held.count):
                 verdict, estimate, limit = self._judged(interval, late=True)
             self._note(interval, estimate, verdict.accepted, self._what_limits(interval, limit, verdict))
             if verdict.accepted:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from orchestrator.master.ports import ReducedPort
 from orchestrator.master.system import Link
 
 
@@ -14,6 +15,15 @@ def repeated_units(count: int, links: Sequence[Link], eligible: Sequence[bool]) 
         if eligible[link.source_unit] and eligible[link.target_unit]:
             reach[link.source_unit].add(link.target_unit)
     return [start in _reachable(reach, start) for start in range(count)]
+
+
+def together(able: Sequence[bool], ports: Sequence[ReducedPort]) -> list[bool]:
+    """Two units that share a reduced interface model are both repeated or both not: apart, the owner would step before its partner."""
+    eligible = list(able)
+    for _ in ports:
+        for port in ports:
+            eligible[port.owner] = eligible[port.partner] = eligible[port.owner] and eligible[port.partner]
+    return eligible
 
 
 def _reachable(reach: Sequence[set[int]], start: int) -> set[int]:
