@@ -394,8 +394,10 @@ def tangents(leg: Leg, at: Shape, loads: Loads, friction: float) -> tuple[Matrix
     damping = plus(times(p.damping + friction, outer(e, e)), joint_damping(leg, at))
     for u, length, load in ((at.right, at.right_length, loads.right), (at.left, at.left_length, loads.left)):
         along = scale(arm, across(e, u))
-        turn = plus(lateral, times(-1.0, outer(across(e, u), across(e, u))))
-        geometric = times(load.force, plus(times(arm * arm / length, turn), times(-arm * dot(e, u) / s, lateral)))
+        side = across(e, u)
+        turn = plus(lateral, times(-1.0, outer(side, side)))
+        lean = plus(times(dot(e, u), lateral), plus(outer(e, side), outer(side, e)))  # how (l_c/s) N u follows e and s
+        geometric = times(load.force, plus(times(arm * arm / length, turn), times(-arm / s, lean)))
         stiffness = plus(stiffness, plus(times(load.stiffness, outer(along, along)), geometric))
         damping = plus(damping, times(load.damping, outer(along, along)))
     return stiffness, damping
