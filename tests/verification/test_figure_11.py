@@ -93,7 +93,7 @@ def test_the_units_integrator_finds_the_same_rest() -> None:
 def test_the_rate_independent_law_rests_without_creep() -> None:
     """Verifies: our second law: same depth, then no motion but elastic swinging about m g on the band's spring.
     Setup: as above. The band gives back ½ K_n δ^p b at 2.5 times the weight: a hop of 1.25 b, which nothing damps but the integrator.
-    Tolerance: 0.01 % for the datum; it must not grow by 1e-9 m in the last two seconds; no hop above 1.25 b by 1 %; the mean force of m g to 1 %.
+    Tolerance: 0.01 % for the datum; no growth by 1e-9 m in two seconds; no hop above 1.25 b by 1 %; mean force m g to 1 %.
     """
     rows = on_one_pad(RATE_INDEPENDENT, 0.01, 300)
     assert rows[-1][3] == pytest.approx(EXPECTED, rel=1e-4)
