@@ -75,7 +75,7 @@ class Simulation:
             return min(self.master.value(place, output) for place, output in watched) - start.value
 
         guess = float(self.blueprint.values[unit].get(name, variable.start or 0.0))
-        what = f"{start.zero} = {start.value:g} by varying {start.vary}"
+        what = f"{', '.join(self.blueprint.scenario.zero)} = {start.value:g} by varying {start.vary}"
         residual(solve_start(residual, guess, abs(variable.nominal), what))
 
     def _varied(self, start: StartTable) -> tuple[int, str]:

@@ -60,6 +60,8 @@ class Scenario:
         ]
         tree["master"]["order"] = [u.name for u in self.units]
         tree["record"]["variables"] = self.record
+        if self.zero:
+            tree["start"]["zero"] = self.zero
         return tree
 
 
@@ -76,9 +78,10 @@ def expand(table: ScenarioTable, where: str, overrides: Sequence[str] = ()) -> S
     for override in overrides:
         _override(units, override)
     connections = [c for entry in table.connections for c in _connections(entry, each, where)]
-    zero = [text for (text,) in _instances((table.start.zero,), each, where)] if table.start else []
-    record = [text for pattern in table.record.variables for (text,) in _instances((pattern,), each, where)]
-    order = [text for template in table.master.order for (text,) in _instances((template,), each, where)]
+    asked = table.start.zero if table.start else []
+    zero = _all_filled([asked] if isinstance(asked, str) else asked, each, where)
+    record = _all_filled(table.record.variables, each, where)
+    order = _all_filled(table.master.order, each, where)
     return Scenario(where, table, _in_order(units, order, where), connections, zero, record)
 
 
@@ -118,6 +121,10 @@ def _connections(entry: ConnectionTable, each: Each, where: str) -> list[Connect
 def _instances(templates: tuple[str, ...], each: Each, where: str) -> list[tuple[str, ...]]:
     """The templates filled together, once for every combination of the placeholders they use."""
     return [tuple(_fill(t, chosen) for t in templates) for chosen in _choices(templates, each, where)]
+
+
+def _all_filled(templates: Sequence[str], each: Each, where: str) -> list[str]:
+    return [text for template in templates for (text,) in _instances((template,), each, where)]
 
 
 def _choices(templates: tuple[str, ...], each: Each, where: str) -> list[dict[str, tuple[str, int]]]:

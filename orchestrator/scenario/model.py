@@ -48,7 +48,8 @@ class StartTable(Table):
     """Before the start, solve the parameter `vary` so that the smallest of the outputs `zero` is `value`."""
 
     vary: str
-    zero: str
+    zero: str | list[str]
+    """Outputs by name or glob, e.g. "soil{leg}.gap"."""
     value: float = 0.0
 
 

@@ -137,3 +137,11 @@ def test_ctrl_c_keeps_everything_computed_marked_incomplete(tmp_path: Path) -> N
     assert "interrupted" in errors
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["complete"] is False
+
+
+def test_the_scenario_a_run_leaves_behind_repeats_it_to_the_bit(tmp_path: Path) -> None:
+    start = '\n[start]\nvary = "b.position_start"\nzero = "b.posit*"\nvalue = 0.7\n'
+    first = orchestrator("run", oscillator(tmp_path, start), "--set", "b.mass=2.5", "--out", tmp_path / "one", cwd=tmp_path)
+    again = orchestrator("run", tmp_path / "one" / "scenario.toml", "--out", tmp_path / "two", cwd=tmp_path)
+    assert (first.returncode, again.returncode) == (0, 0), again.stderr
+    assert (tmp_path / "one" / "history.csv").read_bytes() == (tmp_path / "two" / "history.csv").read_bytes()
