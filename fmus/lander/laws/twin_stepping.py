@@ -220,11 +220,18 @@ def start_flight(vehicle: Vehicle, body: BodyState, f: Flight) -> None:
 
 @jit
 def start_accelerations(vehicle: Vehicle, engine: Engine, f: Flight, a: Array) -> bool:
-    """Accelerations at the start, (n + 1, 6), by a stage of no length."""
+    """Accelerations at the start, (n + 1, 6), by stages of no length.
+
+    One is not enough: a stage judges its Newton steps by the velocity they change, which over no time is none.
+    """
     n = len(vehicle.legs)
     a[:, :] = 0.0
-    ok, _ = stage(vehicle, engine, 0.0, 1e-12, f, f.body, f.legs, np.zeros((n + 1, 3)), a, np.zeros((n + 1, 6)), scratch(n))
-    return ok
+    step = np.zeros((n + 1, 6))
+    for _ in range(50):
+        ok, _power = stage(vehicle, engine, 0.0, 1e-12, f, f.body, f.legs, np.zeros((n + 1, 3)), a, step, scratch(n))
+        if not ok or np.abs(step).max() < 1e-9:  # m/s2, rad/s2
+            return ok
+    return True
 
 
 def empty_flight(n: int) -> Flight:
