@@ -411,6 +411,27 @@ def mobility(leg: Leg, at: Shape) -> Matrix:
 
 
 @jit
+def base_coupling(leg: Leg, at: Shape, p: Vector) -> tuple[Matrix, Matrix]:
+    """How the base's accelerations load p, kg and kg m: inertia force on p = M_c pull + S spin_up.
+
+    The body feels p'' through the transposes.
+    """
+    g, e = leg.geometry, at.axis
+    arm = g.cylinder / at.length
+    k = 1.0 - g.piston / at.length
+    c, m, w = leg.cylinder_mass / 6.0, leg.secondary_mass / 6.0, leg.piston_mass / 6.0
+    swinging = arm * (3.0 * c + 6.0 * m) + 3.0 * w * (1.0 + k) + leg.pad_mass
+    ends = add(scale(c, g.upper), scale(m, add(g.right, g.left)))
+    q_n = axpy(arm, axpy(2.0 * c + 4.0 * m, at.joint, ends), axpy(w * (2.0 + k) + leg.pad_mass, p, scale(w * (1.0 + 2.0 * k), at.head)))
+    q_e = axpy(3.0 * w + leg.pad_mass, p, scale(3.0 * w, at.head))
+    along = outer(e, e)
+    lateral = plus(identity(1.0), times(-1.0, along))
+    straight = plus(times(swinging, lateral), times(axial_mass(leg), along))
+    turning = times(-1.0, plus(product(along, skew(q_e)), product(lateral, skew(q_n))))
+    return straight, turning
+
+
+@jit
 def rigid_wrench(leg: Leg, base: Base) -> tuple[Vector, Vector]:
     """Force (N) and moment about B's origin (N m) that move the undeformed leg rigidly with the body.
 

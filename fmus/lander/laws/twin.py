@@ -22,6 +22,7 @@ from .leg import (
     accelerated,
     axial_mass,
     ball_torque,
+    base_coupling,
     lateral_mass,
     leg_motion,
     mount_wrench,
@@ -193,14 +194,11 @@ def leg_trial(
     stiffness, damping = tangents(leg, at, law.loads, law.damping)
     struts = plus(times(h, damping), times(h * h, stiffness))
     mass = plus(identity(m_n), times(m_e - m_n, outer(at.axis, at.axis)))
-    arm = leg.geometry.cylinder / at.length
-    k = 1.0 - leg.geometry.piston / at.length
-    m_c = arm * (0.5 * leg.cylinder_mass + leg.secondary_mass) + 0.5 * leg.piston_mass * (1.0 + k) + leg.pad_mass
-    shared = plus(identity(m_c), times(m_e - m_c, outer(at.axis, at.axis)))
+    straight, spinning = base_coupling(leg, at, p)
     blocks = np.zeros((18, 6))
     turned = transpose(r)
     put(blocks, 0, 0, product(r, product(plus(mass, struts), turned)))
-    put(blocks, 0, 3, product(r, product(shared, turned)))
+    put(blocks, 0, 3, product(r, product(straight, turned)))
     h2 = h * h
     put(blocks, 6, 0, plus(times(h, soft.c_xx), times(h2, soft.k_xx)))
     put(blocks, 6, 3, plus(times(h, soft.c_xr), times(h2, soft.k_xr)))
@@ -209,6 +207,7 @@ def leg_trial(
     turning = plus(inertia, identity(h * leg.joint_damping))
     put(blocks, 9, 3, plus(turning, plus(times(h, soft.c_rr), times(h2, soft.k_rr))))
     put(blocks, 12, 0, skew(apply(r, p)))
+    put(blocks, 12, 3, product(r, product(spinning, turned)))
     return LegAt(at, law, motion, wrench, ball, residual, twist, force, torque), blocks
 
 
@@ -236,9 +235,10 @@ def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
     the struts'.
     """
     k_xx, k_xr, k_rx, k_rr = block(b, 6, 0), block(b, 6, 3), block(b, 9, 0), block(b, 9, 3)
-    mass, shared, arm = block(b, 0, 0), block(b, 0, 3), block(b, 12, 0)
+    mass, straight, arm, spinning = block(b, 0, 0), block(b, 0, 3), block(b, 12, 0), block(b, 12, 3)
     back = times(-1.0, arm)
-    joint = plus(shared, k_xx)
+    joint = plus(straight, k_xx)
+    turn = plus(spinning, product(k_xx, back))
     work.left[:, :] = 0.0
     work.right[:, :] = 0.0
     put(work.left, 0, 0, plus(mass, k_xx))
@@ -246,7 +246,7 @@ def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
     put(work.left, 3, 0, k_rx)
     put(work.left, 3, 3, k_rr)
     put(work.right, 0, 0, joint)
-    put(work.right, 0, 3, product(joint, back))
+    put(work.right, 0, 3, turn)
     put(work.right, 3, 0, k_rx)
     put(work.right, 3, 3, product(k_rx, back))
     for j in range(3):
@@ -254,7 +254,7 @@ def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
         work.right[3 + j, 6] = trial.twist[j]
     solve_many(work.left, work.right)
     work.legs[i, :, :] = work.right
-    # body: B β + Jᵀ [K J β + (K + M_c) y_x + K_xr y_r] = r_b, with y = solved - (solved columns) β
+    # body: B β + Jᵀ [K J β + K y_x + K_xr y_r] + M_bᵀ y_x = r_b, with y = solved - (solved columns) β
     direct = k_xx
     put(work.body, 0, 0, direct)
     put(work.body, 0, 3, product(direct, back))
@@ -263,8 +263,9 @@ def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
     for column in range(7):
         y_x = (work.right[0, column], work.right[1, column], work.right[2, column])
         y_r = (work.right[3, column], work.right[4, column], work.right[5, column])
-        f = add(apply(joint, y_x), apply(k_xr, y_r))
-        m = apply(arm, f)
+        soft = add(apply(k_xx, y_x), apply(k_xr, y_r))
+        f = add(soft, apply_transposed(straight, y_x))
+        m = add(apply(arm, soft), apply_transposed(spinning, y_x))
         for j in range(3):
             if column < 6:
                 work.body[j, column] -= f[j]
