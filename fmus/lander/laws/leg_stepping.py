@@ -86,14 +86,15 @@ class Stage(NamedTuple):
 
 
 @jit
-def pad_spin(leg: Leg, torque: Vector, rate: Vector, joint: Vector, h: float) -> Vector:
+def pad_spin(leg: Leg, torque: Vector, rate: Vector, now: Vector, joint: Vector, h: float) -> Vector:
     """Angular acceleration of the pad, rad/s2, pad axes, implicit in its own joint damping over h.
 
-    torque  of the soil on the pad, N m, pad axes;  rate  explicit part of its angular velocity;  joint  what the joint would leave it at
+    torque  of the soil on the pad, N m, pad axes;  rate  explicit part of its angular velocity, now  its last iterate
+    joint   what the joint would leave it at
     """
     c = leg.joint_damping
     i = leg.pad_inertia
-    push = add(sub(torque, cross(rate, times_diagonal(i, rate))), scale(c, sub(joint, rate)))
+    push = add(sub(torque, cross(now, times_diagonal(i, now))), scale(c, sub(joint, rate)))
     return (push[0] / (i[0] + h * c), push[1] / (i[1] + h * c), push[2] / (i[2] + h * c))
 
 
@@ -128,7 +129,7 @@ def solve_stage(
         at = shape(leg, p, v)
         pad = rotation(q)
         swing = apply_transposed(pad, apply(body, add(base.rate, cross(at.axis, at.swing))))
-        spin_up = pad_spin(leg, apply_transposed(pad, load.torque), w0, swing, h)
+        spin_up = pad_spin(leg, apply_transposed(pad, load.torque), w0, w, swing, h)
         w = axpy(h, spin_up, w0)
         q = normalise(multiply(q0, from_rotation_vector(axpy(h, w, turn0))))
         ball = ball_torque(leg, base, at, apply_transposed(body, apply(rotation(q), w)))
