@@ -71,7 +71,7 @@ def stepped(leg: Leg, longest: float) -> tuple[LegState, Course]:
 def test_the_leg_and_its_pad_are_integrated_to_order_two() -> None:
     """Verifies: SDIRK2 on the leg and on the pad's rotation, load slopes and base motion at the stages' instants.
     Setup: smooth leg for 40 ms with substeps of 0.4 and 0.025 ms against DOP853 on quaternion-free kinematics.
-    Tolerance: mean order over a factor 16: 2 within 0.1 for the leg; within 0.3 for the pad, whose equation gets as many sweeps as the leg's
+    Tolerance: mean order over a factor 16: 2 within 0.1 for the leg; within 0.3 for the pad, whose equation gets the sweeps that the leg's
     Newton takes, so that its error falls unevenly. At the finest 1e-5 (m, m/s, rad/s).
     """
     leg = soft_leg()
