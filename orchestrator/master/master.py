@@ -26,6 +26,9 @@ StepListener = Callable[[float], None]
 class Master:
     """Steps a system from start to stop. All public times are in s."""
 
+    MEMORY = ("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger")
+    """What passes from one accepted step to the next outside the units: orchestrator.checkpoint keeps it. An object named here has its own."""
+
     def __init__(self, system: System, settings: MasterSettings | None = None) -> None:
         self.system = system
         self.settings = settings or MasterSettings()
@@ -38,6 +41,8 @@ class Master:
         self.unresolved = 0
         self.wall_time = 0.0
         self._settling = 0
+        self._next = 0
+        """Interval proposed for the next step, ns; 0 before the run has begun."""
         self.stop_requested = False
         """Set it (from a signal handler, say) to end after the present step."""
         self._everyone = list(range(len(system.slaves)))
@@ -100,17 +105,24 @@ class Master:
 
     def run(self, on_step: StepListener | None = None) -> None:
         """To the stop time. Raises RunError when a unit fails; what was recorded stays."""
-        entered = perf_counter()
-        interval = self.limits.maximum
-        self.ledger.open()
-        self._record(last=False)
+        entered = perf_counter() - self.wall_time
+        if not self._next:
+            self._next = self.limits.maximum
+            self.ledger.open()
+            self._record(last=False)
         try:
             while self._time < self._stop and not self.stop_requested:
-                interval = self._advance(interval)
+                self._next = self._advance(self._next)
+                self.wall_time = perf_counter() - entered
                 if on_step is not None:
                     on_step(self._time / NANOSECONDS)
         finally:
-            self.wall_time += perf_counter() - entered
+            self.wall_time = perf_counter() - entered
+
+    @property
+    def time(self) -> int:
+        """ns"""
+        return self._time
 
     @property
     def complete(self) -> bool:

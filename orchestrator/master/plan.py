@@ -54,6 +54,7 @@ class Board:
     start: Vector
     now: Vector
     mismatch: Vector
+    MEMORY = ("values",)
     offset: list[int]
     """Per unit, where its outputs begin within `start` and `now`."""
     names: list[tuple[int, str]]
@@ -81,6 +82,7 @@ def companion(name: str, suffix: str) -> str:
 class Plan:
     system: System
     board: Board
+    MEMORY = ("board",)
     reduced: list[ReducedPort]
     inputs: list[list[str]]
     rates: list[list[str]]

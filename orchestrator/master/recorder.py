@@ -15,6 +15,8 @@ from orchestrator.master.system import System
 class Recorder:
     """A table that grows by doubling."""
 
+    MEMORY = ("rows", "_due")
+
     def __init__(self, system: System, board: Board, interval: int) -> None:
         """`interval` in ns; 0 records every accepted step."""
         wanted = [(unit, name) for unit, names in enumerate(system.recorded) for name in names]
@@ -26,6 +28,7 @@ class Recorder:
         self._times = np.empty(256)
         self._rows = np.empty((256, len(wanted)))
         self._count = 0
+        self._early = False
 
     def is_due(self, elapsed: int, last: bool) -> bool:
         """Whether a step that ends `elapsed` ns after the start is to be recorded."""
@@ -37,9 +40,22 @@ class Recorder:
             self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
         self._times[self._count] = time
         np.take(self._now, self._places, out=self._rows[self._count], mode="clip")
+        self._early = elapsed < self._due
         self._count += 1
         if self._interval:
             self._due = (elapsed // self._interval + 1) * self._interval
+
+    @property
+    def rows(self) -> Vector:
+        """Time and columns, without a last row that only a stop asked for: a run that goes on does not have it."""
+        kept = self._count - self._early
+        return np.column_stack([self._times[:kept], self._rows[:kept]])
+
+    @rows.setter
+    def rows(self, table: Vector) -> None:
+        self._count, self._early = len(table), False
+        self._times = np.concatenate([table[:, 0], np.empty(256)])
+        self._rows = np.concatenate([table[:, 1:], np.empty((256, self._rows.shape[1]))])
 
     @property
     def times(self) -> Vector:
@@ -51,6 +67,8 @@ class Recorder:
 
 class Ledger:
     """Work done on each side of every joined pair of ports where both report it, J."""
+
+    MEMORY = ("_begin", "_last", "_throughput")
 
     def __init__(self, system: System, board: Board) -> None:
         self._labels: list[tuple[str, str]] = []
