@@ -1,7 +1,7 @@
 """The run in pictures: where the energy went, which intervals were taken, and the numbers a scenario asks for."""
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
 from orchestrator.results.channels import Array, Channels
 from orchestrator.results.energy import EnergyAccount
@@ -9,6 +9,7 @@ from orchestrator.results.plot_style import INK, Contacts, contact_legend, dress
 from orchestrator.results.schema import ResultsTable
 
 TIME = "time, s"
+ROUND_MS = [step * 10.0**decade for decade in range(-6, 5) for step in (1.0, 2.0, 5.0)]
 
 
 def energy(title: str, times: Array, account: EnergyAccount, contacts: Contacts) -> Figure:
@@ -46,9 +47,12 @@ def intervals(title: str, ends: Array, sizes: Array, accepted: Array, contacts: 
         label = f"{(~taken).sum()} refused, repeated shorter"
         axes.plot(ends[~taken], sizes[~taken] * 1e3, "x", color="#D55E00", markersize=3.5, markeredgewidth=0.8, label=label)
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_locator(FixedLocator(ROUND_MS))
+    axes.yaxis.set_minor_locator(NullLocator())
     axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    least, greatest = 0.99e3 * sizes.min(), 1.01e3 * sizes.max()
+    below, above = (ms for ms in ROUND_MS if ms < least), (ms for ms in ROUND_MS if ms > greatest)
+    axes.set_ylim(max(below, default=least), min(above, default=greatest))
     dress(axes, "interval, ms", TIME)
     colours = leg_colours(list(contacts))
     mark_contacts(axes, contacts, colours)
