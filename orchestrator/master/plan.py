@@ -1,6 +1,6 @@
 """Where every input comes from, worked out once: index arrays into one board of numbers.
 
-    board = [ outputs at the start of the interval | outputs now | 0 | mismatches, six per port with a reduced interface model ]
+    board = [ outputs at the start of the interval | outputs now | 0 | mismatches, six per port with a reduced interface model | 1 ]
 
 An input vector is u = board[first] − H/2·board[second] (second only where a slope is subtracted), so a step costs two
 array operations per unit whatever is connected. The naming rule is in docs/decisions/0001-architecture.md:
@@ -21,6 +21,7 @@ from orchestrator.master.system import Link, System
 
 Places = NDArray[np.intp]
 MISMATCH = ("mismatch_velocity", "mismatch_angular_velocity")
+REFERENCE, VALID = "reference_", "reference_valid"
 
 
 class Phase(Enum):
@@ -65,6 +66,10 @@ class Board:
     def zero(self) -> int:
         return 2 * len(self.names)
 
+    @property
+    def one(self) -> int:
+        return len(self.values) - 1
+
     def now_at(self, unit: int, name: str) -> int:
         return len(self.names) + self.place[unit, name]
 
@@ -108,6 +113,8 @@ class Plan:
                     for at, name in enumerate(port.mismatch):
                         if name in places:
                             first[places[name]] = base + at
+            for name, own in _references(self.system.slaves[unit].interface).items():
+                first[places[name]] = self.board.now_at(unit, own) if own else self.board.one
         if (second == self.board.zero).all():
             second = second[:0]
         return Job(unit, self.system.slaves[unit], u, first, second, np.zeros(len(second)))
@@ -133,8 +140,9 @@ def make_plan(system: System) -> Plan:
     rates = [_rates(system, unit) for unit in range(len(system.slaves))]
     outputs = [_outputs(system, unit, reduced) for unit in range(len(system.slaves))]
     total = sum(len(names) for names, _ in outputs)
-    values = np.zeros(2 * total + 1 + 6 * len(reduced))
-    board = Board(values, values[:total], values[total : 2 * total], values[2 * total + 1 :], [], [])
+    values = np.zeros(2 * total + 2 + 6 * len(reduced))
+    values[-1] = 1.0
+    board = Board(values, values[:total], values[total : 2 * total], values[2 * total + 1 : -1], [], [])
     vectors: list[Vector] = []
     for unit, (names, coupled) in enumerate(outputs):
         begin = len(board.names)
@@ -169,7 +177,22 @@ def _inputs(system: System, unit: int, reduced: list[ReducedPort]) -> list[str]:
     for port in reduced:
         if port.partner == unit:
             names.update(dict.fromkeys(name for name in port.mismatch if name in variables))
+    names.update(dict.fromkeys(_references(system.slaves[unit].interface)))
     return _real_first(names, system.slaves[unit].interface)
+
+
+def _references(interface: Interface) -> dict[str, str]:
+    """Inputs `p.reference_x` -> the unit's own output `p.x`, whose value of the pass before they take; `p.reference_valid` -> ""."""
+    found = {}
+    for name, variable in interface.variables.items():
+        port, _, member = stem(name).rpartition(".")
+        if variable.causality == "input" and member.startswith(REFERENCE):
+            own = f"{port}.{member.removeprefix(REFERENCE)}{name[len(stem(name)) :]}"
+            if member == VALID:
+                found[name] = ""
+            elif own in interface.variables and interface.variables[own].causality == "output":
+                found[name] = own
+    return found
 
 
 def _rates(system: System, unit: int) -> list[str]:
@@ -195,6 +218,7 @@ def _outputs(system: System, unit: int, reduced: list[ReducedPort]) -> tuple[lis
         for owner, name in ((pair.first_unit, pair.first_port), (pair.second_unit, pair.second_port)):
             if owner == unit:
                 coupled.update(dict.fromkeys(v.name for v in interface.elements(f"{name}.work", "output")))
+    coupled.update(dict.fromkeys(own for own in _references(interface).values() if own))
     coupled.update(dict.fromkeys(v.name for s in motion_stems(system, unit) for v in interface.elements(s, "output")))
     others = [name for lists in (system.recorded, system.watched) if lists for name in lists[unit]]
     real = [name for name in coupled if interface.variables[name].kind is Kind.REAL]
