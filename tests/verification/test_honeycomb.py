@@ -152,6 +152,7 @@ def test_a_secondary_has_two_memories() -> None:
     assert force(-0.05, 0.05, 0.05) == pytest.approx(-20017.0, rel=1e-9)
     assert abs(force(-0.02, 0.05, 0.05)) < 1e-6  # gone slack in compression
     assert abs(force(0.03, 0.05, S)) < 1e-6  # gone slack in tension, although pushed is virgin
+    assert force(-0.02, 0.05, S) == pytest.approx(-20017.0, rel=1e-9)  # spent in tension, virgin in compression
     assert force(0.03, S, 0.05) == pytest.approx(2224.0, rel=1e-9)  # spent in compression, virgin in tension
     assert force(0.2, 0.2, S) == pytest.approx(22241.0, rel=1e-9)
     assert force(0.408, 0.408, S) == pytest.approx(22241.0 + 4e4, rel=1e-9)
