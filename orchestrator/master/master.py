@@ -27,7 +27,7 @@ class Master:
     """Steps a system from start to stop. All public times are in s."""
 
     MEMORY = ("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger")
-    """What passes from one accepted step to the next outside the units: orchestrator.checkpoint keeps it. An object named here has its own."""
+    """What passes from one accepted step to the next outside the units, kept by checkpoints. An object named here has its own."""
 
     def __init__(self, system: System, settings: MasterSettings | None = None) -> None:
         self.system = system
