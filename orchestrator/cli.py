@@ -1,4 +1,4 @@
-"""The command line: `orchestrator run`, `show`, `list`. Exit codes stand in orchestrator.errors."""
+"""The command line: `orchestrator run`, `resume`, `show`, `list`. Exit codes stand in orchestrator.errors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -17,10 +17,15 @@ from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
 
+if TYPE_CHECKING:
+    from orchestrator.master.result import RunResult
+    from orchestrator.simulation import Simulation
+
 app = typer.Typer(add_completion=False, no_args_is_help=True, help="Couples FMUs of a lunar lander's touchdown and diagnoses the run.")
 
 ScenarioName = Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated; the unit may be a glob.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no table.")]
 
 
 @app.command()
@@ -30,23 +35,56 @@ def run(
     overrides: Overrides = None,
     stop_time: Annotated[float | None, typer.Option(help="s; instead of the scenario's.")] = None,
     tolerance: Annotated[float | None, typer.Option(help="m; error allowed per step, instead of the scenario's.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no table.")] = False,
+    checkpoint_every: Annotated[float | None, typer.Option(help="s simulated between checkpoints, from which `resume` goes on.")] = None,
+    quiet: Quiet = False,
 ) -> None:
     """Run a scenario and write its results."""
-    from orchestrator import results  # slow to import, and only needed here
-    from orchestrator.blueprint import draw_up, read_scenario
-    from orchestrator.simulation import Simulation, fault
+    from orchestrator.blueprint import draw_up, read_scenario  # slow to import, and only needed here
+    from orchestrator.checkpoint.checkpoint import FOLDER
+    from orchestrator.checkpoint.file import clear
+    from orchestrator.checkpoint.schedule import Schedule
+    from orchestrator.simulation import Simulation
 
     path = find_scenario(scenario)
     changes: dict[str, Any] = {} if stop_time is None else {"stop_time": stop_time}
     if tolerance is not None:
         changes["master"] = {"tolerance": tolerance}
-    blueprint = draw_up(read_scenario(path, overrides or (), changes), path)
-    simulation = Simulation(blueprint)
-    table = blueprint.scenario.table
-    with _interruptible(simulation), _progress(table.title or path.stem, table.start_time, table.stop_time, quiet) as on_step:
-        result = simulation.run(on_step)
-    summary = results.write(result, out or Path("results") / path.stem)
+    folder = out or Path("results") / path.stem
+    schedule = None if checkpoint_every is None else Schedule.asked(folder, checkpoint_every)
+    simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes), path))
+    if schedule is None:
+        clear(folder / FOLDER)
+    with _watched(simulation, quiet) as on_step:
+        result = simulation.run(on_step, schedule)
+    _report(result, folder, quiet)
+
+
+@app.command()
+def resume(
+    directory: Annotated[Path, typer.Argument(help="Folder of a run made with --checkpoint-every.")],
+    stop_time: Annotated[float | None, typer.Option(help="s; instead of the run's.")] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Go on from a run's newest checkpoint, to the files the uninterrupted run would have written."""
+    from orchestrator.checkpoint.checkpoint import newest
+    from orchestrator.checkpoint.schedule import Schedule
+    from orchestrator.simulation import Simulation
+
+    checkpoint = newest(directory, stop_time)
+    for note in checkpoint.notes:
+        _complain("warning", note)
+    simulation = Simulation(checkpoint.blueprint)
+    with _watched(simulation, quiet) as on_step:
+        result = simulation.resume(checkpoint.snapshot, on_step, Schedule.continued(directory, checkpoint))
+    _report(result, directory, quiet)
+
+
+def _report(result: RunResult, folder: Path, quiet: bool) -> None:
+    """Write the results, tell of them, and end with the exit code they deserve."""
+    from orchestrator import results
+    from orchestrator.simulation import fault
+
+    summary = results.write(result, folder)
     if not quiet:
         Console().print(results.terminal_table(summary))
     for warning in result.warnings:
@@ -122,7 +160,16 @@ def _complain(kind: str, message: str) -> None:
 
 
 @contextmanager
-def _interruptible(simulation: Any) -> Iterator[None]:
+def _watched(simulation: Simulation, quiet: bool) -> Iterator[Any]:
+    blueprint = simulation.blueprint
+    table = blueprint.scenario.table
+    title = table.title or (blueprint.path.stem if blueprint.path else "scenario")
+    with _interruptible(simulation), _progress(title, table.start_time, table.stop_time, quiet) as on_step:
+        yield on_step
+
+
+@contextmanager
+def _interruptible(simulation: Simulation) -> Iterator[None]:
     """The first Ctrl-C ends the run after the present step: raised inside a unit, it would be that unit's fatal error."""
 
     def stop(*_: object) -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
+from orchestrator.checkpoint.schedule import Schedule
+from orchestrator.checkpoint.snapshot import Snapshot, put
 from orchestrator.errors import OrchestratorError, RunError, TrustError, UnitError, nearest
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.master.master import Master
@@ -23,7 +25,7 @@ Progress = Callable[[float], None]
 
 
 class Simulation:
-    """Loaded units under a master; `run` once."""
+    """Loaded units under a master; `run` or `resume` once."""
 
     def __init__(self, blueprint: Blueprint, slaves: Sequence[Slave] | None = None) -> None:
         """`slaves` replaces the FMUs by other units of the same names and interfaces."""
@@ -36,20 +38,28 @@ class Simulation:
         settings = MasterSettings(**table.master.model_dump(exclude={"order"}), record_interval=table.record.interval)
         self.master = Master(self.system, settings)
 
-    def run(self, on_step: Progress | None = None) -> RunResult:
+    def run(self, on_step: Progress | None = None, schedule: Schedule | None = None) -> RunResult:
         """Initialise, step to the end, collect. A unit that fails while stepping ends the run with what there is so far."""
         table = self.blueprint.scenario.table
+        if schedule is not None:
+            schedule.check(self.master)
         if table.start is None:
             self._initialise(self.blueprint.values)
         else:
             self._solve_start(table.start)
         self.master.prepare()
-        message = ""
-        try:
-            self.master.run(on_step)
-        except RunError as error:
-            message = str(error)
-        return self._result(message)
+        if schedule is not None:
+            schedule.begin(self.master, self.blueprint, fresh=True)
+        return self._go(on_step, schedule)
+
+    def resume(self, snapshot: Snapshot, on_step: Progress | None = None, schedule: Schedule | None = None) -> RunResult:
+        """Go on from a checkpoint of this blueprint, to the same result."""
+        self._initialise(self.blueprint.values)
+        self.master.prepare()
+        put(self.master, snapshot)
+        if schedule is not None:
+            schedule.begin(self.master, self.blueprint, fresh=False)
+        return self._go(on_step, schedule)
 
     def stop(self) -> None:
         """End after the present step; the result is then marked interrupted."""
@@ -58,6 +68,22 @@ class Simulation:
     def close(self) -> None:
         for slave in self.system.slaves:
             slave.close()
+
+    def _go(self, on_step: Progress | None, schedule: Schedule | None) -> RunResult:
+        def after_step(time: float) -> None:
+            if schedule is not None:
+                schedule.after_step()
+            if on_step is not None:
+                on_step(time)
+
+        message = ""
+        try:
+            self.master.run(after_step)
+            if schedule is not None and not self.master.complete:
+                schedule.interrupt()
+        except RunError as error:
+            message = str(error)
+        return self._result(message)
 
     def _initialise(self, values: Sequence[dict[str, Value]]) -> None:
         table = self.blueprint.scenario.table

@@ -23,8 +23,13 @@ def write_scenario(result: RunResult, path: Path) -> Path:
     lines = [f"# {result.title}", "# As run: overlays merged, settings of the command line applied."]
     if result.scenario_path is not None:
         lines.append(f"# From {result.scenario_path.name}")
-    path.write_text("\n".join(lines) + "\n\n" + tomli_w.dumps(_plain(result.scenario)), encoding="utf-8")
+    path.write_text("\n".join(lines) + "\n\n" + scenario_text(result.scenario), encoding="utf-8")
     return path
+
+
+def scenario_text(scenario: Mapping[str, Any]) -> str:
+    """A scenario's content as TOML that gives every number back."""
+    return tomli_w.dumps(_plain(scenario))
 
 
 def write_inputs(result: RunResult, path: Path) -> Path:
