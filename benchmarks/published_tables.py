@@ -225,7 +225,7 @@ def law_difference(runs: Path) -> str:
     rows = []
     for c, title in TITLES.items():
         a, b = runs / f"apollo11_{c}", runs / f"{c}_law2"
-        position = difference(a, b, {n: n for n in (f"body.body.position[{i}]" for i in (1, 2, 3))})
+        position = distance(a, b, "body.body.position", "body.body.position")
         stroke = difference(a, b, {n: n for n in (f"leg{leg}.{s}.stroke" for leg in LEGS for s in STRUTS)})
         rest = max(abs(v - summary(b)["strokes_m"][n]) for n, v in summary(a)["strokes_m"].items())
         rows.append([title, f"{1e3 * position:.2f} mm", f"{100 * stroke:.3f} cm", f"{100 * rest:.3f} cm"])
@@ -247,12 +247,34 @@ def corrected_strokes(runs: Path) -> str:
     return table(["cm", "Zupp-like", "**LM-5**", "Photo"], rows)
 
 
+def distance(cut: Path, other: Path, ours: str, theirs: str) -> float:
+    """Greatest distance of two points over the history, m; names of the vectors without index."""
+    times, own = series(other, "time"), series(cut, "time")
+    parts = [np.interp(times, own, series(cut, f"{ours}[{i}]")) - series(other, f"{theirs}[{i}]") for i in (1, 2, 3)]
+    return float(np.sqrt(sum(part**2 for part in parts)).max())
+
+
+def rest(runs: Path) -> str:
+    """How still the pads stand after 2.5 s: unrest of the normal force within any 50 ms, and sink."""
+    rows = []
+    for c, title in TITLES.items():
+        for name, label in ((f"apollo11_{c}", "co-simulation"), (f"apollo11_{c}_twin", "twin"), (f"{c}_law2", "co-simulation, law 2")):
+            folder = runs / name
+            soils = [f"lander.soil{k}" if name.endswith("twin") else f"soil{leg}" for k, leg in enumerate(LEGS, 1)]
+            late = series(folder, "time") > 2.5
+            forces = [series(folder, f"{soil}.normal_force")[late] for soil in soils]
+            unrest = max(float(f[i : i + 25].std()) for f in forces for i in range(0, len(f) - 25, 5))
+            depth = [series(folder, f"{soil}.penetration")[late] for soil in soils]
+            rows.append([f"{title}, {label}", f"{unrest:.0f}", f"{max(1e3 * (d[-1] - d[0]) for d in depth):.2f}"])
+    return table(["from 2.5 s to the end", "normal force of a pad, r.m.s. in 50 ms, N", "sink of a pad, mm"], rows)
+
+
 def twin(runs: Path) -> str:
     rows = []
     for c, title in TITLES.items():
         a, b = runs / f"apollo11_{c}", runs / f"apollo11_{c}_twin"
         sa, sb = summary(a), summary(b)
-        position = difference(a, b, {f"body.body.position[{i}]": f"lander.body.position[{i}]" for i in (1, 2, 3)})
+        position = distance(a, b, "body.body.position", "lander.body.position")
         names = {f"leg{leg}.{s}.stroke": f"lander.leg{k}.{s}.stroke" for k, leg in enumerate(LEGS, 1) for s in STRUTS}
         rates = max(
             abs(x - y)
@@ -312,9 +334,17 @@ def flat(runs: Path) -> str:
     return table(["largest over least of the four legs, less 1", "depth", "skid", *STRUTS], rows)
 
 
+def made(runs: Path) -> str:
+    """Which sources the runs are of."""
+    inputs = json.loads((runs / "apollo11_zupp" / "inputs.json").read_text(encoding="utf-8"))
+    commit = (inputs.get("git") or {}).get("commit") or "unknown"
+    return f"Made at commit {commit[:7]}."
+
+
 def tables(runs: Path) -> dict[str, str]:
     """Every table by its marker in docs/results.md."""
     return {
+        "made": made(runs),
         "table-5": table_5(runs),
         "motion": motion(runs),
         "contact": contact(runs),
@@ -329,6 +359,7 @@ def tables(runs: Path) -> dict[str, str]:
         "corrected": corrected(runs),
         "corrected-strokes": corrected_strokes(runs),
         "twin": twin(runs),
+        "rest": rest(runs),
         "cost": cost(runs),
         "honeycomb": honeycomb(runs),
         "footpad": footpad(runs),
