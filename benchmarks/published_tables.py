@@ -132,6 +132,19 @@ def pads(runs: Path) -> str:
     return table(["cm", *(f"{t}, {q}" for t in TITLES.values() for q in ("depth", "skid"))], rows)
 
 
+def depth_over_time(runs: Path) -> str:
+    rows = []
+    for instant in (0.75, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 4.0):
+        row = [f"{instant:g}"]
+        for c in TITLES:
+            folder = runs / f"apollo11_{c}"
+            at = int(np.argmin(np.abs(series(folder, "time") - instant)))
+            for quantity, scale, digits in (("penetration", 100.0, 2), ("skid", 100.0, 1)):
+                row.append(span([float(series(folder, f"soil{leg}.{quantity}")[at]) for leg in LEGS], scale, digits))
+        rows.append(row)
+    return table(["time, s", *(f"{t}, {q}, cm" for t in TITLES.values() for q in ("depths", "skids"))], rows)
+
+
 def table_6(runs: Path) -> str:
     zupp, adams = (summary(runs / f"apollo11_{c}") for c in TITLES)
     columns = ("photo", "rogers", "zupp", "glass_zupp_like", "adams", "glass_adams_like")
@@ -349,6 +362,7 @@ def tables(runs: Path) -> dict[str, str]:
         "motion": motion(runs),
         "contact": contact(runs),
         "pads": pads(runs),
+        "depth-over-time": depth_over_time(runs),
         "table-6": table_6(runs),
         "pattern": pattern(runs),
         "thrust-zupp": thrust(runs, "zupp"),
