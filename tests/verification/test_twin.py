@@ -105,10 +105,10 @@ def test_a_stretch_on_the_ground_against_radau() -> None:
 def test_starting_accelerations_stand_still(random: np.random.Generator) -> None:
     """Verifies: the accelerations at the start solve the equations to the end, with legs in motion.
     Setup: change of the twin's velocities over 0.1 microseconds against them.
-    Tolerance: 2 % of the largest: struts of rate 4e4 1/s change their forces by 0.4 % in that time.
+    Tolerance: 2 % of the largest: struts of rate 4e4 1/s change their forces by 0.4 % in that time (found 0.8 %).
     """
     craft = vehicle()
-    flight = swinging(craft, random, 0.3)
+    flight = swinging(craft, random, 0.1)
     a = np.zeros((5, 6))
     assert start_accelerations(craft, ENGINE_OFF, flight, a)
     h = 1e-7
