@@ -32,6 +32,7 @@ class Fmi2Unit:
         self.interface = interface or read_interface(path)
         self.steps = 0
         self.seconds = 0.0
+        self.reached: float | None = None
         self._log = MessageLog(name)
         self._dead = self._used = False
         self._slot = ctypes.c_void_p(None)

@@ -42,6 +42,7 @@ class FunctionUnit:
         )
         self.steps = 0
         self.seconds = 0.0
+        self.reached: float | None = None
         self.messages: list[str] = []
 
     def bind(self, binding: Binding) -> None:

@@ -6,19 +6,21 @@ from collections.abc import Callable
 from math import nan
 from time import perf_counter
 
-from orchestrator.errors import StepError
 from orchestrator.master.checks import check_finite, truly_rolls_back
-from orchestrator.master.estimate import HeldEstimate, ModelEstimate, MotionEstimate, larger
-from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, halve, judge, step_limits
-from orchestrator.master.plan import Job, Phase, make_plan
-from orchestrator.master.ports import held_ports, motion_ports
+from orchestrator.master.coupling import check_asked, connection_records, couple
+from orchestrator.master.estimates import Estimates
+from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, judge, step_limits
+from orchestrator.master.plan import Phase, make_plan
 from orchestrator.master.recorder import Ledger, Recorder
-from orchestrator.master.result import Attempt
-from orchestrator.master.roles import repeated_units, together
+from orchestrator.master.refusal import Refusal, next_attempt, stuck_error
+from orchestrator.master.result import Attempt, ConnectionRecord
+from orchestrator.master.roles import together
 from orchestrator.master.settings import NANOSECONDS, MasterSettings, in_ns
-from orchestrator.master.slave import Status
-from orchestrator.master.start import Values, assemble, initialise
+from orchestrator.master.slave import Vector
+from orchestrator.master.start import Values, initialise
+from orchestrator.master.sweep import Sweep, jobs_of
 from orchestrator.master.system import System
+from orchestrator.master.watchdog import Watchdog
 
 StepListener = Callable[[float], None]
 
@@ -26,7 +28,10 @@ StepListener = Callable[[float], None]
 class Master:
     """Steps a system from start to stop. All public times are in s."""
 
-    MEMORY = ("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger")
+    MEMORY = (
+        *("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger"),
+        *("switched", "block_memory"),
+    )
     """What passes from one accepted step to the next outside the units, kept by checkpoints. An object named here has its own."""
 
     def __init__(self, system: System, settings: MasterSettings | None = None) -> None:
@@ -40,7 +45,9 @@ class Master:
         self.warnings: list[str] = []
         self.unresolved = 0
         self.wall_time = 0.0
+        self.watchdog = Watchdog(self.settings.step_timeout)
         self._settling = 0
+        self._switched: list[list[int]] = []
         self._next = 0
         """Interval proposed for the next step, ns; 0 before the run has begun."""
         self.stop_requested = False
@@ -61,39 +68,26 @@ class Master:
     def prepare(self) -> None:
         """Test claims of rollback, and settle from that who is stepped how. After `initialise`."""
         system = self.system
+        check_asked(self.plan)
         check_finite(self.plan, self._time)
         probe = self.limits.maximum
         self.rollback = [truly_rolls_back(self.plan, unit, self._time, probe, self.warnings) for unit in self._everyone]
         able = [can and slave.name not in system.once for can, slave in zip(self.rollback, system.slaves, strict=True)]
-        self.repeated = repeated_units(len(system.slaves), system.links, together(able, self.plan.reduced))
-        loop = [unit for unit in self._everyone if self.repeated[unit]]
-        rest = [unit for unit in self._everyone if not self.repeated[unit]]
-        self._first = self.plan.jobs(Phase.FIRST, loop, self.repeated)
-        self._again = self.plan.jobs(Phase.AGAIN, loop, self.repeated)
-        self._after = self.plan.jobs(Phase.AFTER, rest, self.repeated)
+        self._able = together(able, self.plan.reduced)
         self._savers = [slave for slave, can in zip(system.slaves, self.rollback, strict=True) if can]
-        self._choose_estimates()
+        self._couple()
+        self.warnings += self._estimates.warnings
         self._fix_interval()
         for slave in system.slaves:
             slave.steps, slave.seconds = 0, 0.0
 
-    def _choose_estimates(self) -> None:
-        """What there is to judge a step by; a warning where there is nothing."""
-        system, board, settings, reduced = self.system, self.plan.board, self.settings, self.plan.reduced
-        inner = [self.repeated[p.owner] and self.repeated[p.partner] for p in reduced]
-        # With no repeated port at all, the models are still measured, after the units that are stepped once.
-        self._model_is_late = not any(inner) and bool(inner)
-        self._model = ModelEstimate(board, reduced, inner if any(inner) else [True] * len(inner), settings.model_lever)
-        if any(inner) and not all(inner):
-            label = reduced[inner.index(False)].label
-            self.warnings.append(f"{label}: a unit there is stepped once per accepted step, so its model gives no estimate")
-        in_loop = repeated_units(len(system.slaves), system.links, [True] * len(system.slaves))
-        self._motion = MotionEstimate(board, motion_ports(system, self.repeated), settings.motion_lever)
-        self._held = HeldEstimate(board, held_ports(system, self.repeated, in_loop), settings.motion_lever)
-        judged = self._model.count or self._held.count or (self._motion.count and settings.passes > 1)
-        asked = all(slave.name in system.once for slave, loop in zip(system.slaves, in_loop, strict=True) if loop)
-        if any(in_loop) and not judged and not asked:
-            self.warnings.append("no port gives an error estimate: every interval is max_interval; check by halving it")
+    def _couple(self) -> None:
+        """Everything that follows from how the connections are coupled."""
+        self.coupling = couple(self.plan, self._able, {frozenset(pair) for pair in self._switched})
+        self.repeated = self.coupling.repeated
+        self._sweep = Sweep(self.plan, self.coupling, self.settings, self.watchdog)
+        self._passes = self.settings.passes if self.coupling.needs_passes else 1
+        self._estimates = Estimates(self.plan, self.coupling, self._sweep.blocks, self._passes, self.settings)
 
     def _fix_interval(self) -> None:
         """A unit that takes one step size only sets it for all: nothing can then be rejected."""
@@ -119,6 +113,30 @@ class Master:
         finally:
             self.wall_time = perf_counter() - entered
 
+    def connections(self) -> list[ConnectionRecord]:
+        """How each is coupled."""
+        return connection_records(self.plan, self.coupling, self._passes)
+
+    @property
+    def switched(self) -> list[list[int]]:
+        """Pairs of units whose passes were seen not to contract."""
+        return self._switched
+
+    @switched.setter
+    def switched(self, pairs: list[list[int]]) -> None:
+        if pairs != self._switched:
+            self._switched = pairs
+            self._couple()
+
+    @property
+    def block_memory(self) -> Vector:
+        """What the quasi-Newton carries from one interval to the next."""
+        return self._sweep.memory
+
+    @block_memory.setter
+    def block_memory(self, values: Vector) -> None:
+        self._sweep.memory = values
+
     @property
     def time(self) -> int:
         """ns"""
@@ -132,7 +150,9 @@ class Master:
         """One accepted step, after as many rejected ones as it takes; returns the interval proposed for the next, ns."""
         for slave in self._savers:
             slave.save()
-        interval = wanted
+        self._sweep.time = self._time
+        self._sweep.note_start()
+        interval, followed = wanted, False
         while True:
             interval = fit_to_stop(interval, self._stop - self._time, self.limits)
             refused = self._attempt(interval)
@@ -140,9 +160,13 @@ class Master:
                 verdict, estimate, limit = self._judged(interval)
                 refused = self._finish(interval) if verdict.accepted else None
             if refused is not None:
-                interval = self._shrink_after_discard(interval, refused)
+                self._note(interval, nan, False, refused.kind)
+                self._settling = SETTLING
+                interval = next_attempt(refused, self._time, interval, self.limits, not followed)
+                followed = followed or bool(refused.reached)
+                self._undo()
                 continue
-            if verdict.accepted and (self._model_is_late or self._held.count):
+            if verdict.accepted and self._estimates.late:
                 verdict, estimate, limit = self._judged(interval, late=True)
             self._note(interval, estimate, verdict.accepted, self._what_limits(interval, limit, verdict))
             if verdict.accepted:
@@ -158,70 +182,39 @@ class Master:
         """The verdict with the estimate and the port it comes from; `late`, after units were stepped that may not be undone."""
         check_finite(self.plan, self._time)
         length = interval / NANOSECONDS
-        estimate = self._motion.estimate(length) if self.settings.passes > 1 else (nan, "")
-        if late:
-            estimate = larger(estimate, self._held.estimate(length))
-            if self._model_is_late:
-                self._model.measure()
-        if late or not self._model_is_late:
-            estimate = larger(self._model.estimate(length), estimate)
+        estimate = self._estimates.of_everything(length) if late else self._estimates.of_passes(length)
         return judge(interval, estimate[0], self.limits, not late, self._settling > 0), *estimate
 
-    def _attempt(self, interval: int) -> Job | None:
-        """All passes over one interval. Returns the unit that refused it, if one did."""
-        self._model.reset()
-        refused = self._sweep(self._first, interval)
-        for _ in range(1, self.settings.passes):
-            if refused is not None or not self._first:
-                break
-            if not self._model_is_late:
-                self._model.measure()
-                self._model.accumulate()
-            self._motion.remember()
-            for job in self._again:
+    def _attempt(self, interval: int) -> Refusal | None:
+        """All passes over one interval."""
+        self._estimates.model.reset()
+        sweep = self._sweep
+        refused = sweep.over(sweep.first, interval)
+        for _ in range(1, self._passes):
+            if refused is not None:
+                return refused
+            self._estimates.before_pass()
+            for job in jobs_of(sweep.again):
                 job.slave.restore()
-            refused = self._sweep(self._again, interval)
-        if refused is None and not self._model_is_late:
-            self._model.measure()
+            refused = sweep.over(sweep.again, interval)
+        if refused is None:
+            self._estimates.after_passes()
         return refused
 
-    def _sweep(self, jobs: list[Job], interval: int) -> Job | None:
-        board = self.plan.board.values
-        time, length = self._time / NANOSECONDS, interval / NANOSECONDS
-        for job in jobs:
-            assemble(board, job, 0.5 * length)
-            if job.slave.step(time, length) is Status.DISCARD:
-                return job
-        return None
-
-    def _finish(self, interval: int) -> Job | None:
-        """Units stepped once. Returns the unit that refused, if one did and everything can be undone."""
-        refused = self._sweep(self._after, interval)
+    def _finish(self, interval: int) -> Refusal | None:
+        """Units stepped once. Returns the refusal of one, if everything can be undone."""
+        after = self._sweep.after
+        refused = self._sweep.over(after, interval)
         if refused is None:
-            if self._after:
+            if after:
                 check_finite(self.plan, self._time)
             return None
-        stepped = self._after[: self._after.index(refused) + 1]
+        jobs = jobs_of(after)
+        stepped = jobs[: jobs.index(refused.job) + 1]
         stuck = [job.slave.name for job in stepped if not self.rollback[job.unit]]
         if stuck:
-            raise StepError(
-                f"{refused.slave.name}: refused the step at t = {self._time / NANOSECONDS:.9g} s of {interval / NANOSECONDS:.3g} s"
-                f" and {stuck[0]} cannot roll back: {_last(refused)}; lower max_interval"
-            )
+            raise stuck_error(refused, stuck[0], self._time, interval)
         return refused
-
-    def _shrink_after_discard(self, interval: int, refused: Job) -> int:
-        name = refused.slave.name
-        self._note(interval, nan, False, f"discard by {name}")
-        self._settling = SETTLING
-        shorter = halve(interval, self.limits)
-        if shorter is None:
-            raise StepError(
-                f"{name}: refused the step at t = {self._time / NANOSECONDS:.9g} s even at the smallest interval,"
-                f" {interval / NANOSECONDS:.3g} s: {_last(refused)}"
-            )
-        self._undo()
-        return shorter
 
     def _undo(self) -> None:
         """Every unit that can, back to the start of the interval; the board's start was never left."""
@@ -244,7 +237,7 @@ class Master:
             self.recorder.record(self._time / NANOSECONDS, elapsed)
 
     def _note(self, interval: int, estimate: float, accepted: bool, limit: str) -> None:
-        passes = self.settings.passes if self._first else 1
+        passes = max(self._passes, self._sweep.iterations)
         self.log.append(Attempt(self._time / NANOSECONDS, interval / NANOSECONDS, passes, estimate, accepted, limit))
 
     def _what_limits(self, interval: int, port: str, verdict: Verdict) -> str:
@@ -252,7 +245,3 @@ class Master:
         if verdict.accepted and not verdict.unresolved and self._time + interval == self._stop:
             return "stop time"
         return "max interval" if verdict.next_interval >= self.limits.maximum and not verdict.unresolved else port
-
-
-def _last(job: Job) -> str:
-    return job.slave.messages[-1] if job.slave.messages else "it gave no message"

@@ -1,6 +1,7 @@
 """Where every input comes from, worked out once: index arrays into one board of numbers.
 
-    board = [ outputs at the start of the interval | outputs now | 0 | mismatches, six per port with a reduced interface model | 1 ]
+    board = [ outputs at the start of the interval | outputs now | 0 | mismatches, six per port with a reduced interface model
+            | outputs at the end as a quasi-Newton assumes them | 1 ]
 
 An input vector is u = board[first] − H/2·board[second] (second only where a slope is subtracted), so a step costs two
 array operations per unit whatever is connected. The naming rule is in docs/decisions/0001-architecture.md:
@@ -9,6 +10,7 @@ a fresh mean m with slope k is sent as m − k·H/2 and k; everything else as it
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -76,6 +78,9 @@ class Board:
     def start_at(self, unit: int, name: str) -> int:
         return self.place[unit, name]
 
+    def end_at(self, unit: int, name: str) -> int:
+        return len(self.values) - 1 - len(self.names) + self.place[unit, name]
+
 
 def companion(name: str, suffix: str) -> str:
     """"pad.force[3]", "_mean" -> "pad.force_mean[3]"."""
@@ -92,19 +97,26 @@ class Plan:
     inputs: list[list[str]]
     rates: list[list[str]]
     vectors: list[Vector]
+    coupled: list[int]
+    """Per unit, how many of its outputs are fetched after every step; they stand first."""
 
-    def jobs(self, phase: Phase, units: list[int], repeated: list[bool]) -> list[Job]:
-        """The units of a phase in order, each with the sources of its inputs."""
-        return [self._job(unit, phase, repeated) for unit in units]
+    def jobs(self, phase: Phase, units: list[int], repeated: list[bool], held: Collection[Link] = ()) -> list[Job]:
+        """The units of a phase in order, each with the sources of its inputs; links that are `held` carry values at the start."""
+        rank = {unit: at for at, unit in enumerate(units)}
+        return [self._job(unit, phase, repeated, rank, held) for unit in units]
 
-    def _job(self, unit: int, phase: Phase, repeated: list[bool]) -> Job:
+    def input_places(self, unit: int) -> dict[str, int]:
+        """Where in its vector each input stands, and each derivative by the standard call as `der(name)`."""
+        return {name: at for at, name in enumerate([*self.inputs[unit], *(f"der({r})" for r in self.rates[unit])])}
+
+    def _job(self, unit: int, phase: Phase, repeated: list[bool], rank: dict[int, int], held: Collection[Link]) -> Job:
         u = self.vectors[unit]
-        places = {name: at for at, name in enumerate([*self.inputs[unit], *(f"der({r})" for r in self.rates[unit])])}
+        places = self.input_places(unit)
         first = np.full(len(u), self.board.zero, dtype=np.intp)
         second = first.copy()
         for link in self.system.links:
             if link.target_unit == unit:
-                fresh = _is_fresh(link.source_unit, unit, phase, repeated)
+                fresh = link not in held and _is_fresh(link.source_unit, unit, phase, repeated, rank)
                 self._route(link, fresh, places, first, second)
         if phase is Phase.AGAIN:
             for number, port in enumerate(self.reduced):
@@ -140,9 +152,9 @@ def make_plan(system: System) -> Plan:
     rates = [_rates(system, unit) for unit in range(len(system.slaves))]
     outputs = [_outputs(system, unit, reduced) for unit in range(len(system.slaves))]
     total = sum(len(names) for names, _ in outputs)
-    values = np.zeros(2 * total + 2 + 6 * len(reduced))
+    values = np.zeros(3 * total + 2 + 6 * len(reduced))
     values[-1] = 1.0
-    board = Board(values, values[:total], values[total : 2 * total], values[2 * total + 1 : -1], [], [])
+    board = Board(values, values[:total], values[total : 2 * total], values[2 * total + 1 : -1 - total], [], [])
     vectors: list[Vector] = []
     for unit, (names, coupled) in enumerate(outputs):
         begin = len(board.names)
@@ -152,16 +164,17 @@ def make_plan(system: System) -> Plan:
         vectors.append(np.zeros(len(inputs[unit]) + len(rates[unit])))
         y = board.now[begin : begin + len(names)]
         system.slaves[unit].bind(Binding(inputs[unit], rates[unit], names, coupled, vectors[unit], y))
-    return Plan(system, board, reduced, inputs, rates, vectors)
+    return Plan(system, board, reduced, inputs, rates, vectors, [coupled for _, coupled in outputs])
 
 
-def _is_fresh(source: int, target: int, phase: Phase, repeated: list[bool]) -> bool:
+def _is_fresh(source: int, target: int, phase: Phase, repeated: list[bool], rank: dict[int, int]) -> bool:
     """Whether the source was already computed over this interval when the target steps."""
+    earlier = source in rank and rank[source] < rank[target]
     if phase is Phase.FIRST:
-        return repeated[source] and source < target
+        return repeated[source] and earlier
     if phase is Phase.AGAIN:
         return repeated[source]
-    return repeated[source] or source < target
+    return repeated[source] or earlier
 
 
 def _inputs(system: System, unit: int, reduced: list[ReducedPort]) -> list[str]:

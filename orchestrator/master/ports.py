@@ -62,34 +62,19 @@ def reduced_ports(system: System) -> list[ReducedPort]:
     return found
 
 
-def motion_ports(system: System, repeated: list[bool]) -> list[MotionPort]:
-    """Ports that feed motion from one repeated unit to another and carry no reduced interface model of their own."""
-    return _motion_ports(system, lambda source, target: repeated[source] and repeated[target])
-
-
-def held_ports(system: System, repeated: list[bool], in_loop: list[bool]) -> list[MotionPort]:
-    """Ports that feed motion round a loop in which one side is stepped once, though nobody asked for that: explicit coupling."""
-    asked = [slave.name in system.once for slave in system.slaves]
-
-    def held(source: int, target: int) -> bool:
-        both_repeated = repeated[source] and repeated[target]
-        return in_loop[source] and in_loop[target] and not both_repeated and not asked[source] and not asked[target]
-
-    return _motion_ports(system, held)
+def motion_ports(system: System, wanted: Callable[[int, int], bool]) -> list[MotionPort]:
+    """Ports that feed motion from one unit to another, where that is wanted, and carry no reduced interface model of their own."""
+    return [
+        MotionPort(system.label(unit, port), unit, _six(system.slaves[unit].interface, f"{port}." if port else "", "output"))
+        for unit in range(len(system.slaves))
+        for port in _ports_giving_motion(system, unit, wanted)
+    ]
 
 
 def motion_stems(system: System, unit: int) -> list[str]:
     """Stems of the motion this unit gives, whether or not all of it is taken."""
     ports = _ports_giving_motion(system, unit, lambda source, target: True)
     return [f"{port}.{member}" if port else member for port in ports for member in MOTION]
-
-
-def _motion_ports(system: System, wanted: Callable[[int, int], bool]) -> list[MotionPort]:
-    return [
-        MotionPort(system.label(unit, port), unit, _six(system.slaves[unit].interface, f"{port}." if port else "", "output"))
-        for unit in range(len(system.slaves))
-        for port in _ports_giving_motion(system, unit, wanted)
-    ]
 
 
 def _ports_giving_motion(system: System, unit: int, wanted: Callable[[int, int], bool]) -> list[str]:

@@ -50,6 +50,19 @@ class LedgerRow:
 
 
 @dataclass(frozen=True)
+class ConnectionRecord:
+    """How a connection was coupled."""
+
+    first: str
+    """`unit.port`, or the unit's name where variables are connected one by one."""
+    second: str
+    scheme: str
+    """See orchestrator.master.system.Scheme."""
+    detail: str = ""
+    """E.g. iterations per interval, or why it is not what was asked for."""
+
+
+@dataclass(frozen=True)
 class UnitRecord:
     """What a unit is, what it can do, how it was stepped and what that cost."""
 

@@ -35,3 +35,17 @@ def _reachable(reach: Sequence[set[int]], start: int) -> set[int]:
             seen.add(unit)
             front.extend(reach[unit])
     return seen
+
+
+def strongly_connected(count: int, links: Sequence[Link]) -> list[set[int]]:
+    """Groups of units of which each reaches every other."""
+    reach = [set[int]() for _ in range(count)]
+    for link in links:
+        reach[link.source_unit].add(link.target_unit)
+    reached = [_reachable(reach, start) for start in range(count)]
+    groups: list[set[int]] = []
+    for unit in range(count):
+        group = {other for other in reached[unit] if unit in reached[other]} | {unit}
+        if group not in groups:
+            groups.append(group)
+    return groups

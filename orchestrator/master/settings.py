@@ -24,9 +24,15 @@ class MasterSettings:
     slopes: bool = True
     """Send a slope with a mean wherever both sides have one."""
     model_lever: float = 0.3
-    """m: turns an angular velocity at a port with a reduced interface model into a velocity."""
+    """m: turns an angular velocity at a port with a reduced interface model, or under a quasi-Newton, into a velocity."""
     motion_lever: float = 4.0
     """m: the same for the other ports that give motion."""
+    max_iterations: int = 20
+    """Of a quasi-Newton in one interval."""
+    interface_share: float = 0.02
+    """A quasi-Newton has converged when its next correction would move the units by less than this share of the tolerance."""
+    step_timeout: float = 60.0
+    """s of wall time in one call of a unit, after which it is taken to hang; 0: wait for ever."""
     unresolved_limit: float = 0.01
     """Share of accepted steps that may miss the tolerance at the smallest interval before the run is not trusted."""
     ledger_limit: float = 0.05

@@ -128,6 +128,8 @@ class Slave(Protocol):
     """Calls of `step` so far."""
     seconds: float
     """Wall time spent inside so far, s."""
+    reached: float | None
+    """After a refused step: the time up to which the unit says it did step, s; None where it does not say."""
 
     @property
     def messages(self) -> list[str]:

@@ -4,8 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from orchestrator.master.slave import Slave
+
+
+class Scheme(StrEnum):
+    """How a connection is coupled. The first three may be asked for; else the master chooses by what the units can do."""
+
+    PASSES = "fixed-point"
+    """Both units repeated over the interval, the later passes with what the earlier ones gave."""
+    NEWTON = "quasi-newton"
+    """Both repeated until what they exchange at the end of the interval agrees; inputs run linearly over it."""
+    EXPLICIT = "explicit"
+    """Both ways with values held at the start of the interval."""
+    MODEL = "reduced interface model"
+    ONE_WAY = "one way"
 
 
 @dataclass(frozen=True)
@@ -18,6 +32,8 @@ class Link:
     target: str
     slope: bool = True
     """Whether a slope travels with a mean."""
+    scheme: Scheme | None = None
+    """As asked for."""
 
 
 @dataclass(frozen=True)

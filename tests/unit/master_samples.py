@@ -7,7 +7,7 @@ import numpy as np
 from orchestrator.master.function_unit import FunctionUnit
 from orchestrator.master.master import Master
 from orchestrator.master.settings import MasterSettings
-from orchestrator.master.system import Link, System
+from orchestrator.master.system import Link, Scheme, System
 
 STIFFNESS, STRETCH, HEAVY = 100.0, 0.2, 2.0
 OMEGA = float(np.sqrt(STIFFNESS * (1.0 + 1.0 / HEAVY)))
@@ -46,18 +46,20 @@ def spring(**options: Any) -> FunctionUnit:
     return FunctionUnit("spring", inputs, {"e": STRETCH}, lambda s, u: give(s["e"], s["e"], s["e"], 1.0), advance, **options)
 
 
-def links(slope: bool = True) -> list[Link]:
+def links(slope: bool = True, scheme: Scheme | None = None) -> list[Link]:
     return [
-        Link(0, "velocity", 2, "va", slope),
-        Link(1, "velocity", 2, "vb", slope),
-        Link(2, "fa", 0, "f", slope),
-        Link(2, "fb", 1, "f", slope),
+        Link(0, "velocity", 2, "va", slope, scheme),
+        Link(1, "velocity", 2, "vb", slope, scheme),
+        Link(2, "fa", 0, "f", slope, scheme),
+        Link(2, "fb", 1, "f", slope, scheme),
     ]
 
 
-def oscillator(settings: MasterSettings, slope: bool = True, spring_unit: FunctionUnit | None = None) -> Master:
+def oscillator(
+    settings: MasterSettings, slope: bool = True, spring_unit: FunctionUnit | None = None, scheme: Scheme | None = None
+) -> Master:
     units = [mass("a", 1.0, 0.0), mass("b", HEAVY, 1.2), spring_unit or spring()]
-    return prepared(System(units, links(slope), recorded=[["x"], ["x"], ["stretch"]]), settings)
+    return prepared(System(units, links(slope, scheme), recorded=[["x"], ["x"], ["stretch"]]), settings)
 
 
 def prepared(system: System, settings: MasterSettings, stop: float = 1.0) -> Master:
