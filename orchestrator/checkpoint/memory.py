@@ -1,7 +1,8 @@
 """What an object remembers, taken out and put back: its class names the attributes in MEMORY.
 
 An attribute that is an object with a MEMORY of its own is followed; arrays and plain values are copied. Names are paths from
-the top: "recorder.rows".
+the top: "recorder.rows". Properties take part with their setters, and what is named first is put back first, so that a setter can
+make what the later ones fill.
 """
 
 from __future__ import annotations
@@ -24,33 +25,34 @@ class Memory:
 def recall(owner: Any) -> Memory:
     """A copy of everything the object remembers."""
     memory = Memory()
-    for path, holder, name in _places(owner, ""):
-        value = getattr(holder, name)
-        if isinstance(value, np.ndarray):
-            memory.arrays[path] = value.copy()
-        else:
-            memory.plain[path] = copy.deepcopy(value)
+    _recall(owner, "", memory)
     return memory
 
 
 def adopt(owner: Any, memory: Memory) -> None:
     """Put it back. Arrays are overwritten in place, because others may look at them; a property sets itself."""
-    for path, holder, name in _places(owner, ""):
-        if path not in memory.arrays:
-            setattr(holder, name, copy.deepcopy(memory.plain[path]))
-        elif isinstance(getattr(type(holder), name, None), property):
-            setattr(holder, name, memory.arrays[path])
-        else:
-            getattr(holder, name)[...] = memory.arrays[path]
+    _adopt(owner, "", memory)
 
 
-def _places(owner: Any, prefix: str) -> list[tuple[str, Any, str]]:
-    """(path, object, attribute) of everything remembered."""
-    found = []
+def _recall(owner: Any, prefix: str, memory: Memory) -> None:
     for name in owner.MEMORY:
         value = getattr(owner, name)
         if hasattr(value, "MEMORY"):
-            found += _places(value, f"{prefix}{name}.")
+            _recall(value, f"{prefix}{name}.", memory)
+        elif isinstance(value, np.ndarray):
+            memory.arrays[prefix + name] = value.copy()
         else:
-            found.append((f"{prefix}{name}", owner, name))
-    return found
+            memory.plain[prefix + name] = copy.copy(value)
+
+
+def _adopt(owner: Any, prefix: str, memory: Memory) -> None:
+    for name in owner.MEMORY:
+        present, path = getattr(owner, name), prefix + name
+        if hasattr(present, "MEMORY"):
+            _adopt(present, f"{path}.", memory)
+        elif path in memory.plain:
+            setattr(owner, name, copy.copy(memory.plain[path]))
+        elif isinstance(getattr(type(owner), name, None), property):
+            setattr(owner, name, memory.arrays[path])
+        else:
+            present[...] = memory.arrays[path]
