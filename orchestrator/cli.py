@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError
+from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
 
@@ -54,6 +54,7 @@ def run(
     simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes), path))
     if schedule is None:
         clear(folder / FOLDER)
+    simulation.on_hang = _leaving(folder, quiet)
     with _watched(simulation, quiet) as on_step:
         result = simulation.run(on_step, schedule)
     _report(result, folder, quiet)
@@ -74,6 +75,7 @@ def resume(
     for note in checkpoint.notes:
         _complain("warning", note)
     simulation = Simulation(checkpoint.blueprint)
+    simulation.on_hang = _leaving(directory, quiet)
     with _watched(simulation, quiet) as on_step:
         result = simulation.resume(checkpoint.snapshot, on_step, Schedule.continued(directory, checkpoint))
     _report(result, directory, quiet)
@@ -95,6 +97,22 @@ def _report(result: RunResult, folder: Path, quiet: bool) -> None:
     error = fault(result)
     if error is not None:
         raise error
+
+
+def _leaving(folder: Path, quiet: bool) -> Callable[[RunResult], None]:
+    """For a unit that hangs: report from the watchdog's thread and leave, since nobody else will come back to do it."""
+
+    def leave(result: RunResult) -> None:
+        try:
+            _report(result, folder, quiet)
+        except OrchestratorError as error:
+            _complain("error", str(error))
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(RunError.exit_code)
+
+    return leave
 
 
 @app.command()

@@ -37,6 +37,8 @@ class Simulation:
         self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero)
         settings = MasterSettings(**table.master.model_dump(exclude={"order"}), record_interval=table.record.interval)
         self.master = Master(self.system, settings)
+        self.on_hang: Callable[[RunResult], None] | None = None
+        """What to do with the run so far when a unit does not come back; called from another thread, must leave the process."""
 
     def run(self, on_step: Progress | None = None, schedule: Schedule | None = None) -> RunResult:
         """Initialise, step to the end, collect. A unit that fails while stepping ends the run with what there is so far."""
@@ -78,12 +80,18 @@ class Simulation:
 
         message = ""
         try:
+            self._watch()
             self.master.run(after_step)
             if schedule is not None and not self.master.complete:
                 schedule.interrupt()
         except RunError as error:
             message = str(error)
         return self._result(message)
+
+    def _watch(self) -> None:
+        on_hang = self.on_hang
+        if on_hang is not None:
+            self.master.watchdog.on_hang = lambda message: on_hang(self._result(message))
 
     def _initialise(self, values: Sequence[dict[str, Value]]) -> None:
         table = self.blueprint.scenario.table
@@ -138,6 +146,7 @@ class Simulation:
             descriptions={name: shown[name].description for name in columns},
             log=master.log,
             ledger=master.ledger.rows(),
+            connections=master.connections(),
             unit_records=[self._unit_record(place) for place in range(len(self.system.slaves))],
             accepted=accepted,
             rejected=len(master.log) - accepted,

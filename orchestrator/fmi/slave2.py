@@ -7,6 +7,7 @@ and checks every call costs more than the call.
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -21,6 +22,7 @@ from orchestrator.fmi.messages import MessageLog
 from orchestrator.fmi.unpack import unpack
 from orchestrator.master.slave import Binding, Interface, Kind, Status, Value
 
+_LAST_SUCCESSFUL_TIME = 2
 _GOOD, _DISCARD = int(Status.WARNING), int(Status.DISCARD)
 
 
@@ -104,10 +106,18 @@ class Fmi2Unit:
         status = self._dll.fmi2DoStep(self._component, time, interval, 0)
         if status > _GOOD and status != _DISCARD:
             self._check("doStep", status)
-        if status != _DISCARD:
+        if status == _DISCARD:
+            self.reached = self._last_successful_time()
+        else:
             self._fetch()
         self.seconds += perf_counter() - entered
         return Status.DISCARD if status == _DISCARD else Status.OK
+
+    def _last_successful_time(self) -> float | None:
+        """After a Discard: how far the unit came, where it can tell."""
+        time = ctypes.c_double(math.nan)
+        status = self._dll.fmi2GetRealStatus(self._component, _LAST_SUCCESSFUL_TIME, ctypes.byref(time))
+        return time.value if status <= _GOOD and math.isfinite(time.value) else None
 
     def observe(self) -> None:
         entered = perf_counter()

@@ -59,6 +59,7 @@ class Master:
         """Outputs at the start, consistent with each other; may be called again with other values."""
         self._time = in_ns(start)
         self._begin, self._stop = self._time, in_ns(stop)
+        self.watchdog.where = lambda: f" at t = {self._time / NANOSECONDS:.9g} s"
         initialise(self.plan, self._start_jobs, start, stop, values)
 
     def value(self, unit: int, name: str) -> float:
@@ -105,13 +106,17 @@ class Master:
             self.ledger.open()
             self._record(last=False)
         try:
-            while self._time < self._stop and not self.stop_requested:
-                self._next = self._advance(self._next)
-                self.wall_time = perf_counter() - entered
-                if on_step is not None:
-                    on_step(self._time / NANOSECONDS)
+            with self.watchdog:
+                self._step_to_the_end(entered, on_step)
         finally:
             self.wall_time = perf_counter() - entered
+
+    def _step_to_the_end(self, entered: float, on_step: StepListener | None) -> None:
+        while self._time < self._stop and not self.stop_requested:
+            self._next = self._advance(self._next)
+            self.wall_time = perf_counter() - entered
+            if on_step is not None:
+                on_step(self._time / NANOSECONDS)
 
     def connections(self) -> list[ConnectionRecord]:
         """How each is coupled."""

@@ -132,6 +132,8 @@ class RunResult:
     """One line each, e.g. a unit whose claimed rollback is not true."""
     unit_messages: list[str] = field(default_factory=list)
     """What the units logged, "unit: message"."""
+    connections: list[ConnectionRecord] = field(default_factory=list)
+    """How each was coupled."""
     paper: dict[str, Any] = field(default_factory=dict)
     """The scenario's [paper] table, unchanged."""
     results: dict[str, Any] = field(default_factory=dict)

@@ -20,11 +20,12 @@ class Watchdog:
         self.where: Callable[[], str] = str
         """What to add to the message: the time the run has reached."""
         self._unit = ""
-        self._since = 0.0
+        self.wall_time = 0.0
+        """When the present call was made."""
         self._done = threading.Event()
 
     def enter(self, unit: str) -> None:
-        self._since = monotonic()
+        self.wall_time = monotonic()
         self._unit = unit
 
     def leave(self) -> None:
@@ -41,8 +42,8 @@ class Watchdog:
 
     def _watch(self, done: threading.Event, on_hang: OnHang) -> None:
         while not done.wait(min(1.0, 0.25 * self._timeout)):
-            unit, since = self._unit, self._since
-            if unit and monotonic() - since > self._timeout and self._since == since:
+            unit, since = self._unit, self.wall_time
+            if unit and monotonic() - since > self._timeout and self.wall_time == since:
                 on_hang(
                     f"{unit}: has not come back from doStep{self.where()} for {self._timeout:g} s and is taken to hang;"
                     " raise master.step_timeout if it needs longer, or mend the unit"

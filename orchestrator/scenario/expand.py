@@ -36,6 +36,12 @@ class Connection:
     second: str
     both_ways: bool
     slope: bool
+    scheme: str | None = None
+
+
+    def as_run(self) -> dict[str, Any]:
+        ends: dict[str, Any] = {"ports": [self.first, self.second]} if self.both_ways else {"from": self.first, "to": self.second}
+        return ends | {"slope": self.slope} | ({"scheme": self.scheme} if self.scheme else {})
 
 
 @dataclass(frozen=True)
@@ -54,10 +60,7 @@ class Scenario:
         """A scenario file's content that repeats this run without `extends`, `each` or `--set`."""
         tree = self.table.model_dump(by_alias=True, exclude_none=True, exclude={"each", "units", "connections"})
         tree["units"] = {u.name: {"fmu": u.fmu, "once": u.once, "parameters": u.parameters} for u in self.units}
-        tree["connections"] = [
-            {**({"ports": [c.first, c.second]} if c.both_ways else {"from": c.first, "to": c.second}), "slope": c.slope}
-            for c in self.connections
-        ]
+        tree["connections"] = [c.as_run() for c in self.connections]
         tree["master"]["order"] = [u.name for u in self.units]
         tree["record"]["variables"] = self.record
         if self.zero:
@@ -115,7 +118,7 @@ def _for_instance(value: dict[str, Any], chosen: Mapping[str, tuple[str, int]], 
 
 def _connections(entry: ConnectionTable, each: Each, where: str) -> list[Connection]:
     first, second = entry.ports if entry.ports is not None else (entry.source or "", entry.target or "")
-    return [Connection(a, b, entry.ports is not None, entry.slope) for a, b in _instances((first, second), each, where)]
+    return [Connection(a, b, entry.ports is not None, entry.slope, entry.scheme) for a, b in _instances((first, second), each, where)]
 
 
 def _instances(templates: tuple[str, ...], each: Each, where: str) -> list[tuple[str, ...]]:

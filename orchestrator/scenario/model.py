@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -35,6 +35,8 @@ class ConnectionTable(Table):
     target: str | None = Field(default=None, alias="to")
     slope: bool = True
     """Send slopes with means on this connection."""
+    scheme: Literal["fixed-point", "quasi-newton", "explicit"] | None = None
+    """How to couple it, instead of what the master would choose."""
 
     @model_validator(mode="after")
     def _one_of_two_forms(self) -> ConnectionTable:
@@ -64,6 +66,9 @@ class MasterTable(Table):
     slopes: bool = _DEFAULT.slopes
     model_lever: Positive = _DEFAULT.model_lever
     motion_lever: Positive = _DEFAULT.motion_lever
+    max_iterations: Annotated[int, Field(ge=2, le=200)] = _DEFAULT.max_iterations
+    interface_share: Positive = _DEFAULT.interface_share
+    step_timeout: Annotated[float, Field(ge=0.0)] = _DEFAULT.step_timeout
     unresolved_limit: Annotated[float, Field(ge=0.0, le=1.0)] = _DEFAULT.unresolved_limit
     ledger_limit: Annotated[float, Field(ge=0.0)] = _DEFAULT.ledger_limit
 
@@ -105,7 +110,7 @@ def known_keys(path: tuple[int | str, ...]) -> list[str]:
         case ("units", _):
             return list(UnitTable.model_fields)
         case ("connections", _):
-            return ["ports", "from", "to", "slope"]
+            return ["ports", "from", "to", "slope", "scheme"]
         case (str(name),) if name in tables:
             return list(tables[name].model_fields)
     return []

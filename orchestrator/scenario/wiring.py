@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from orchestrator.errors import WiringError, nearest
 from orchestrator.master.slave import Interface, Variable
-from orchestrator.master.system import Link, PortPair
+from orchestrator.master.system import Link, PortPair, Scheme
 from orchestrator.scenario.expand import Connection
 
 _COMPANIONS = {"output": ("_mean", "_slope"), "input": ("_slope", "_added")}
 _BY_THE_MASTER = ("mismatch_velocity", "mismatch_angular_velocity")
+
+
+class Manner(NamedTuple):
+    """How a connection's links are to be coupled."""
+
+    slope: bool
+    scheme: Scheme | None
 
 
 class Wiring:
@@ -33,8 +41,8 @@ class Wiring:
 
     def _join(self, connection: Connection) -> None:
         (first, first_port), (second, second_port) = (self._port(text) for text in (connection.first, connection.second))
-        slope = connection.slope and self._slopes
-        made = self._one_way(first, first_port, second, second_port, slope) + self._one_way(second, second_port, first, first_port, slope)
+        manner = self._manner(connection)
+        made = self._one_way(first, first_port, second, second_port, manner) + self._one_way(second, second_port, first, first_port, manner)
         if not made:
             gives = ", ".join(self._members(first, first_port, "output")) or "nothing"
             takes = ", ".join(self._members(second, second_port, "input")) or "nothing"
@@ -42,12 +50,15 @@ class Wiring:
             raise WiringError(f"{label}: no member in common: one gives {gives}, the other takes {takes}; join other ports")
         self.pairs.append(PortPair(self._places[first], first_port, self._places[second], second_port))
 
-    def _one_way(self, source: str, source_port: str, target: str, target_port: str, slope: bool) -> int:
+    def _manner(self, connection: Connection) -> Manner:
+        return Manner(connection.slope and self._slopes, Scheme(connection.scheme) if connection.scheme else None)
+
+    def _one_way(self, source: str, source_port: str, target: str, target_port: str, manner: Manner) -> int:
         given = self._members(source, source_port, "output")
         taken = self._members(target, target_port, "input")
         common = [member for member in given if member in taken and member not in _BY_THE_MASTER]
         for member in common:
-            self._link(source, given[member], target, taken[member], slope)
+            self._link(source, given[member], target, taken[member], manner)
         return len(common)
 
     def _members(self, unit: str, port: str, causality: str) -> dict[str, list[Variable]]:
@@ -63,9 +74,9 @@ class Wiring:
     def _link_by_name(self, connection: Connection) -> None:
         source, given = self._variable(connection.first, "output")
         target, taken = self._variable(connection.second, "input")
-        self._link(source, given, target, taken, connection.slope and self._slopes)
+        self._link(source, given, target, taken, self._manner(connection))
 
-    def _link(self, source: str, given: Sequence[Variable], target: str, taken: Sequence[Variable], slope: bool) -> None:
+    def _link(self, source: str, given: Sequence[Variable], target: str, taken: Sequence[Variable], manner: Manner) -> None:
         label = f"{self._where}: {source}.{given[0].name} -> {target}.{taken[0].name}"
         if len(given) != len(taken):
             raise WiringError(f"{label}: sends {len(given)} elements, expects {len(taken)}; connect vectors of one length")
@@ -80,7 +91,7 @@ class Wiring:
                     f"{self._where}: {target}.{other.name}: fed by {self._fed[place]} and by {source}.{one.name}; remove one connection"
                 )
             self._fed[place] = f"{source}.{one.name}"
-            self.links.append(Link(self._places[source], one.name, self._places[target], other.name, slope))
+            self.links.append(Link(self._places[source], one.name, self._places[target], other.name, *manner))
 
     def _port(self, text: str) -> tuple[str, str]:
         unit, name = self._unit(text)

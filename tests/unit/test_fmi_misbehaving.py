@@ -1,0 +1,73 @@
+"""Foreign units that return early, fail or hang: named in one line, and everything computed so far is kept."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from fmi_c_sample import c_sample
+
+from orchestrator.master.result import RunResult
+from orchestrator.simulation import run_scenario
+
+
+def scenario(folder: Path, state: bool = True, **master: float) -> Path:
+    settings = {"max_interval": 0.04, "min_interval": 1e-3} | master
+    lines = "\n".join(f"{key} = {value}" for key, value in settings.items())
+    fmu = c_sample(state)
+    path = folder / "odd.toml"
+    path.write_text(
+        f'stop_time = 1.0\nfmus = "{fmu.parent.as_posix()}"\n[units.odd]\nfmu = "{fmu.stem}"\n[units.even]\nfmu = "{fmu.stem}"\n'
+        f'[[connections]]\nfrom = "odd.x"\nto = "even.u"\n[master]\n{lines}\n'
+    )
+    return path
+
+
+def ran(folder: Path, *overrides: str, state: bool = True) -> RunResult:
+    return run_scenario(scenario(folder, state), overrides)
+
+
+def test_an_early_return_is_honoured_for_everybody(tmp_path: Path) -> None:
+    result = ran(tmp_path, "odd.wall=0.15")
+    assert result.complete
+    ends = [round(row.time + row.interval, 9) for row in result.log if row.accepted]
+    assert {0.15, 0.3, 0.45, 0.6, 0.75, 0.9} <= set(ends)
+    assert {row.limit for row in result.log if not row.accepted} == {"early return of odd"}
+    assert result.rejected == 6
+    assert result.columns["odd.x"][-1] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_an_early_return_of_a_unit_that_cannot_go_back_names_it_and_how_far_it_came(tmp_path: Path) -> None:
+    result = ran(tmp_path, "odd.wall=0.15", state=False)
+    assert not result.complete
+    assert "odd: refused the step at t = 0.12 s of 0.04 s, came to 0.15 s and odd cannot roll back" in result.message
+    assert result.times[-1] == pytest.approx(0.12)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "words"),
+    [
+        ("error_from", "odd: doStep returned Error"),
+        ("fatal_from", "odd: doStep returned Fatal"),
+        ("nan_from", "odd: x is nan near t = 0.5"),
+    ],
+)
+def test_a_failure_is_named_and_what_was_computed_stays(tmp_path: Path, parameter: str, words: str) -> None:
+    result = ran(tmp_path, f"odd.{parameter}=0.5")
+    assert words in result.message
+    assert "\n" not in result.message
+    assert not result.trusted
+    assert 0.45 < result.times[-1] < 0.55
+
+
+def test_a_unit_that_hangs_ends_the_run_with_its_name_and_the_results_so_far(tmp_path: Path) -> None:
+    path, out = scenario(tmp_path, step_timeout=1.0), tmp_path / "out"
+    command = [sys.executable, "-m", "orchestrator.cli", "run", str(path), "--out", str(out), "--quiet", "--set", "odd.hang_from=0.5"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, env=os.environ)
+    assert done.returncode == 3, done.stderr
+    assert "error: odd: has not come back from doStep at t = 0.52 s for 1 s" in done.stderr
+    assert "Traceback" not in done.stderr
+    rows = (out / "history.csv").read_text().splitlines()
+    assert rows[-1].startswith("0.52")
+    assert (out / "summary.json").is_file()
