@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from math import inf, nan
+from math import inf, nan, prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,14 +176,10 @@ class Block:
 
     def _extrapolated(self, ahead: float, points: int) -> Vector:
         """z at the end of the interval, by the polynomial through its last values."""
-        rows = self._history[-points:]
-        rows = rows[rows[:, 0] == rows[:, 0]]
-        time = rows[-1, 0] + ahead
-        z = np.zeros(rows.shape[1] - 1)
-        for i, row in enumerate(rows):
-            others = np.delete(rows[:, 0], i)
-            z += np.prod((time - others) / (row[0] - others)) * row[1:]
-        return z
+        times = [time for time in self._history[:, 0].tolist() if time == time][-points:]
+        end = times[-1] + ahead
+        weights = [prod((end - other) / (time - other) for other in times if other != time) for time in times]
+        return np.asarray(np.array(weights) @ self._history[-len(times) :, 1:])
 
 
 def _own_reals(plan: Plan, unit: int) -> slice:

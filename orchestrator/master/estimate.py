@@ -28,6 +28,9 @@ class Norms:
 
     def largest(self, delta: NDArray[np.float64]) -> tuple[float, str]:
         """Over the rows; m/s, and which row."""
+        if len(self.labels) == 1:
+            a, b, c, d, e, f = delta.tolist()
+            return max(a * a + b * b + c * c, self._lever**2 * (d * d + e * e + f * f)) ** 0.5, self.labels[0]
         squares = np.square(delta).reshape(len(self.labels), 2, 3).sum(axis=2)
         norms = np.maximum(squares[:, 0], self._lever**2 * squares[:, 1])
         worst = int(norms.argmax())

@@ -45,6 +45,9 @@ class InterfaceNewton:
             self._learn(z, answer)
         self._z.append(z.copy())
         self._answers.append(answer)
+        if self.size == 1:
+            rest = 1.0 - float(self._now[0, 0])
+            return (g - z) / rest if rest else g - z
         try:
             return np.asarray(np.linalg.solve(np.eye(self.size) - self._now[: self.size], g - z))
         except np.linalg.LinAlgError:
@@ -64,6 +67,8 @@ class InterfaceNewton:
 
     def can_weigh(self, change: Vector) -> bool:
         """Whether M knows the direction of this change."""
+        if self._directions == self.size:
+            return True
         scaled = change / self._scale
         rest = scaled - self._explored @ (self._explored.T @ scaled)
         return bool(rest @ rest <= _NEW**2 * (scaled @ scaled))
