@@ -7,12 +7,13 @@ from lander.laws.footpad import Footpad, lever
 from lander.laws.honeycomb import DATUM_WEIGHT, Core, Stop, brake_damping
 from lander.laws.leg import Leg, disc_inertia
 from lander.laws.leg_geometry import GearDimensions, leg_geometry
+from lander.laws.leg_stepping import PadLoad
 from lander.laws.rigid_body import Body, BodyState, inertia_matrix
 from lander.laws.soil import PUBLISHED, Soil
 from lander.laws.surface import depth_at, inclined_plane
 from lander.laws.twin import Engine, Flight, Vehicle
 from lander.laws.twin_stepping import empty_flight, start_flight
-from lander.laws.vectors import Matrix, Vector, add, apply, from_yaw_pitch_roll, rotation
+from lander.laws.vectors import ZERO, Matrix, Vector, add, apply, from_yaw_pitch_roll, identity, rotation
 
 MASS, GRAVITY, CG_HEIGHT = 7063.5, 1.63, 3.62
 INERTIA: Vector = (16492.0, 17409.0, 20800.0)
@@ -91,3 +92,9 @@ def started(craft: Vehicle, landing: Landing = ZUPP, above: float = 0.0) -> Flig
     flight = empty_flight(len(craft.legs))
     start_flight(craft, BodyState((height, 0.0, 0.0), attitude, apply(turned, landing.velocity), landing.rates), flight)
     return flight
+
+
+def pad_load(force: Vector, torque: Vector = ZERO, force_slope: Vector = ZERO, torque_slope: Vector = ZERO) -> PadLoad:
+    """A wrench on the pad that does not answer the pad's motion: whatever else the record holds is zero."""
+    answers = (identity(0.0) if name in ("stiffness", "damping") else ZERO for name in PadLoad._fields[4:])
+    return PadLoad(force, torque, force_slope, torque_slope, *answers)

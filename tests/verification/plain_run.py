@@ -6,11 +6,11 @@
 import json
 
 import numpy as np
-from apollo_samples import ENGINE_OFF, GRAVITY, ZUPP_SOIL, leg_at, started, vehicle
+from apollo_samples import ENGINE_OFF, GRAVITY, ZUPP_SOIL, leg_at, pad_load, started, vehicle
 from lander.laws.base_motion import BaseMotion
 from lander.laws.compiled import COMPILED
 from lander.laws.footpad import Footpad, PadMotion, start_memory
-from lander.laws.leg_stepping import PadLoad, start_state, step_leg
+from lander.laws.leg_stepping import start_state, step_leg
 from lander.laws.soil_stepping import InterfaceModel, PadStart, Shift, step_soil
 from lander.laws.surface import inclined_plane
 from lander.laws.twin_stepping import Settings, integrate, start_accelerations
@@ -21,7 +21,7 @@ def leg() -> list[float]:
     """Ten milliseconds of a leg under load on a moving base."""
     attitude = from_rotation_vector((0.1, -0.2, 0.05))
     base = BaseMotion((4.0, 0.0, 0.0), attitude, (-0.6, -0.5, 0.2), (0.1, 0.2, -0.1), (1.0, -2.0, 1.5), ZERO, (0.5, -0.8, 1.0), ZERO)
-    load = PadLoad((20000.0, 3000.0, -5000.0), (40.0, 10.0, 5.0), ZERO, ZERO)
+    load = pad_load((20000.0, 3000.0, -5000.0), (40.0, 10.0, 5.0), ZERO, ZERO)
     piece = leg_at(0.6)
     end, course, _ = step_leg(piece, GRAVITY, base, load, start_state(piece, attitude, base.rate), 0.01, 2.5e-4, ZERO)
     return [*end.position, *end.velocity, *end.attitude, *end.rate, *course.impulse, course.pad_work, course.dissipated]

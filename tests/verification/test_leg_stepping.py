@@ -5,12 +5,12 @@ from itertools import pairwise
 import leg_points as heap
 import numpy as np
 import pytest
-from apollo_samples import GRAVITY, leg_at
+from apollo_samples import GRAVITY, leg_at, pad_load
 from lander.laws.base_motion import BaseMotion, as_base, base_at
 from lander.laws.honeycomb import Stop
 from lander.laws.interface import leg_energy
 from lander.laws.leg import Crush, Leg, ball_torque, leg_motion, shape
-from lander.laws.leg_stepping import Course, LegState, PadLoad, start_state, step_leg
+from lander.laws.leg_stepping import Course, LegState, start_state, step_leg
 from lander.laws.vectors import ZERO, Vector, apply, cross, from_rotation_vector, rotation
 from scipy.integrate import solve_ivp
 
@@ -20,7 +20,7 @@ BASE = BaseMotion(
     (4.0, 0.0, 0.0), from_rotation_vector((0.2, 0.1, -0.3)), (-0.6, -0.5, -0.2), (0.1, 0.2, -0.15),
     (1.0, -2.0, 1.5), (3.0, 2.0, -4.0), (0.5, -0.8, 1.0), (2.0, 3.0, -1.0),
 )  # fmt: skip
-LOAD = PadLoad((4000.0, 900.0, -700.0), (40.0, -30.0, 20.0), (9000.0, -5000.0, 3000.0), (100.0, 50.0, -80.0))
+LOAD = pad_load((4000.0, 900.0, -700.0), (40.0, -30.0, 20.0), (9000.0, -5000.0, 3000.0), (100.0, 50.0, -80.0))
 
 
 def soft_leg() -> Leg:
@@ -127,7 +127,7 @@ def test_a_stiff_virgin_leg_converges_to_the_same_end() -> None:
     kinks of saturation, not the order, set the error.
     """
     leg = leg_at(0.6)
-    load = PadLoad((20000.0, 3000.0, -5000.0), ZERO, ZERO, ZERO)
+    load = pad_load((20000.0, 3000.0, -5000.0), ZERO, ZERO, ZERO)
     ends = [step_leg(leg, GRAVITY, BASE, load, start_state(leg, BASE.attitude, BASE.rate), INTERVAL, h, ZERO) for h in (2.5e-4, 4e-6)]
     assert all(last.ok for _, _, last in ends)
     coarse, fine = ends[0][0], ends[1][0]
