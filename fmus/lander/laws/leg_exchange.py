@@ -4,13 +4,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .base_motion import BaseMotion, BaseState, as_base, base_at
-from .blocks import put_matrix, put_quaternion, put_vector, quaternion, vector
+from .blocks import matrix, put_matrix, put_quaternion, put_vector, quaternion, vector
 from .compiled import jit
 from .interface import interface_model, leg_energy, pad_state
-from .leg import Crush, Leg, leg_motion, mount_wrench, shape, strokes
+from .leg import (
+    Crush,
+    Leg,
+    Loads,
+    axial_mass,
+    base_coupling,
+    lateral_mass,
+    leg_motion,
+    mount_wrench,
+    shape,
+    strokes,
+    tangents,
+)
 from .leg_stepping import LegState, PadLoad, Stage, start_state, step_leg
 from .soil_stepping import InterfaceModel
-from .vectors import ZERO, Vector, add, apply_transposed, rotation, scale, sub
+from .vectors import (
+    ZERO,
+    Vector,
+    add,
+    apply,
+    apply_transposed,
+    identity,
+    outer,
+    plus,
+    product,
+    rotation,
+    scale,
+    sub,
+    times,
+    transpose,
+)
 
 Array = NDArray[np.float64]
 MOUNT_WORK, PAD_WORK, KINETIC, POTENTIAL, DISSIPATED = range(5)  # the ledger's places
@@ -32,9 +59,20 @@ def read_base(body: Array) -> BaseMotion:
 
 
 @jit
-def read_load(pad: Array) -> PadLoad:
-    """Wrench on the pad: force, slope, socket, torque, slope, socket (18 numbers)."""
-    return PadLoad(add(vector(pad, 0), vector(pad, 6)), add(vector(pad, 9), vector(pad, 15)), vector(pad, 3), vector(pad, 12))
+def read_load(pad: Array, contact: Array, place: Vector) -> PadLoad:
+    """Wrench on the pad: force, slope, socket, torque, slope, socket (18 numbers); contact: the ground's stiffness and damping, predicted
+    velocity and its slope (24 numbers); place: the pad's at the start, m, L."""
+    return PadLoad(
+        add(vector(pad, 0), vector(pad, 6)),
+        add(vector(pad, 9), vector(pad, 15)),
+        vector(pad, 3),
+        vector(pad, 12),
+        matrix(contact, 0),
+        matrix(contact, 9),
+        vector(contact, 18),
+        vector(contact, 21),
+        place,
+    )
 
 
 @jit
@@ -67,6 +105,25 @@ def write_model(out: Array, m: InterfaceModel) -> None:
     put_vector(out, 36, m.inertia)
     out[39] = m.joint_damping
     put_vector(out, 40, m.strut_rate)
+
+
+@jit
+def write_mount_model(leg: Leg, base: BaseState, now: LegState, loads: Loads, friction: float, contact: Array, out: Array) -> None:
+    """Port members `mount.model_*` (66 numbers, as `impedance.read_mount` takes them); contact: the ground's tangents in L (18)."""
+    at = shape(leg, now.position, now.velocity)
+    m_e, m_n = axial_mass(leg), lateral_mass(leg, at)
+    straight, turning = base_coupling(leg, at, now.position)
+    stiffness, damping = tangents(leg, at, loads, friction)
+    body = rotation(base.attitude)
+    back = transpose(body)
+    put_vector(out, 0, now.position)
+    put_matrix(out, 3, plus(identity(m_n), times(m_e - m_n, outer(at.axis, at.axis))))
+    put_matrix(out, 12, straight)
+    put_matrix(out, 21, turning)
+    put_matrix(out, 30, stiffness)
+    put_matrix(out, 39, damping)
+    put_matrix(out, 48, product(back, product(matrix(contact, 0), body)))
+    put_matrix(out, 57, product(back, product(matrix(contact, 9), body)))
 
 
 @jit
@@ -116,7 +173,9 @@ def start_leg(
     stroke_rate: float,
     body: Array,
     load: Array,
+    contact: Array,
     mount: Array,
+    impedance: Array,
     pad: Array,
     model: Array,
     struts: Array,
@@ -129,7 +188,7 @@ def start_leg(
     axis = shape(leg, now.position, ZERO).axis
     now = LegState(now.position, scale(-stroke_rate, axis), now.attitude, now.rate, now.crush)
     write_state(s, now, ZERO)
-    force = read_load(load).force
+    force = read_load(load, contact, ZERO).force
     frame = as_base(base, gravity)
     own = apply_transposed(rotation(base.attitude), force)
     at = shape(leg, now.position, now.velocity)
@@ -138,6 +197,7 @@ def start_leg(
     for i in range(2):
         put_vector(mount, 9 * i, on_body[i])
         put_vector(mount, 9 * i + 3, on_body[i])
+    write_mount_model(leg, base, now, motion.loads, motion.damping, contact, impedance)
     write_pad(leg, gravity, base, now, force, ZERO, pad, model)
     write_struts(leg, now, motion.primary, motion.right, motion.left, struts)
     write_energy(leg, gravity, base, now, ledger)
@@ -151,7 +211,9 @@ def advance_leg(
     step: float,
     body: Array,
     load: Array,
+    contact: Array,
     mount: Array,
+    impedance: Array,
     pad: Array,
     model: Array,
     struts: Array,
@@ -159,8 +221,9 @@ def advance_leg(
     s: Array,
 ) -> bool:
     """Take the leg over `step` seconds and fill its outputs; False where Newton gave up (nothing is written then)."""
-    motion, wrench = read_base(body), read_load(load)
-    now, course, last = step_leg(leg, gravity, motion, wrench, read_state(s), step, longest, vector(s, 18))
+    motion, before = read_base(body), read_state(s)
+    wrench = read_load(load, contact, pad_state(base_at(motion, 0.0), before).position)
+    now, course, last = step_leg(leg, gravity, motion, wrench, before, step, longest, vector(s, 18))
     if not last.ok:
         return False
     write_state(s, now, last.motion.acceleration)
@@ -169,7 +232,8 @@ def advance_leg(
     ledger[PAD_WORK] += course.pad_work
     ledger[DISSIPATED] += course.dissipated
     base = base_at(motion, step)
-    write_pad(leg, gravity, base, now, add(wrench.force, scale(step, wrench.force_slope)), last.ball, pad, model)
+    write_mount_model(leg, base, now, last.motion.loads, last.motion.damping, contact, impedance)
+    write_pad(leg, gravity, base, now, apply(rotation(base.attitude), last.force), last.ball, pad, model)
     write_struts(leg, now, last.motion.primary, last.motion.right, last.motion.left, struts)
     write_energy(leg, gravity, base, now, ledger)
     return True

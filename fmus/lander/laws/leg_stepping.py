@@ -8,7 +8,7 @@ beside it: its coupling to the swing is weak, so one block sweep a Newton iterat
 from math import ceil, sqrt
 from typing import NamedTuple
 
-from .base_motion import BaseMotion, as_base, base_at
+from .base_motion import BaseMotion, BaseState, as_base, base_at
 from .compiled import jit
 from .leg import Base, Crush, Leg, Motion, ball_torque, crushed, leg_motion, mobility, mount_wrench, shape, tangents, times_diagonal
 from .vectors import (
@@ -33,6 +33,7 @@ from .vectors import (
     solve,
     sub,
     times,
+    transpose,
 )
 
 GAMMA = 1.0 - sqrt(0.5)
@@ -52,12 +53,20 @@ class LegState(NamedTuple):
 
 
 class PadLoad(NamedTuple):
-    """Wrench on the pad at the start of the interval and its slopes, about the ball joint, L."""
+    """Wrench on the pad at the start of the interval and its slopes, about the ball joint, L; and how it answers the pad's motion.
+
+    The force holds for a pad that moves as the soil predicted; it changes by -C (v - v_pred) - K (x - x_pred).
+    """
 
     force: Vector  # N
     torque: Vector  # N m
     force_slope: Vector
     torque_slope: Vector
+    stiffness: Matrix = (ZERO, ZERO, ZERO)  # K, N/m
+    damping: Matrix = (ZERO, ZERO, ZERO)  # C, N s/m
+    predicted: Vector = ZERO  # v_pred at the start, m/s
+    predicted_slope: Vector = ZERO  # m/s2
+    place: Vector = ZERO  # x_pred, m: the pad's own place at the start
 
 
 class Course(NamedTuple):
@@ -99,9 +108,19 @@ def pad_spin(leg: Leg, torque: Vector, rate: Vector, now: Vector, joint: Vector,
 
 
 @jit
+def answer(load: PadLoad, here: BaseState, body: Matrix, rate: Vector, p: Vector, v: Vector) -> Vector:
+    """Force on the pad at the instant of `load`, N, B, with the pad where it is."""
+    away = sub(add(here.position, apply(body, p)), load.place)
+    faster = sub(add(here.velocity, apply(body, add(cross(rate, p), v))), load.predicted)
+    held = add(apply(load.damping, faster), apply(load.stiffness, away))
+    return apply_transposed(body, sub(load.force, held))
+
+
+@jit
 def solve_stage(
     leg: Leg,
     base: Base,
+    here: BaseState,
     body: Matrix,
     p0: Vector,
     v0: Vector,
@@ -117,11 +136,13 @@ def solve_stage(
 
     body   rotation B to L;  load  wrench at the stage's instant;  turn0  explicit part of the pad's rotation since q0
     """
-    force = apply_transposed(body, load.force)
     a, spin_up = guess, ZERO
     v = axpy(h, a, v0)
     p = axpy(h, v, p0)
     w, q, ball = w0, q0, ZERO
+    force = answer(load, here, body, base.rate, p, v)
+    ground_damping = product(transpose(body), product(load.damping, body))
+    ground_stiffness = product(transpose(body), product(load.stiffness, body))
     motion = leg_motion(leg, base, p, v, force, ball, crush)
     size = 1e300
     step, share, ok = ZERO, 1.0, False
@@ -133,6 +154,7 @@ def solve_stage(
         w = axpy(h, spin_up, w0)
         q = normalise(multiply(q0, from_rotation_vector(axpy(h, w, turn0))))
         ball = ball_torque(leg, base, at, apply_transposed(body, apply(rotation(q), w)))
+        force = answer(load, here, body, base.rate, p, v)
         motion = leg_motion(leg, base, p, v, force, ball, crush)
         residual = sub(motion.acceleration, a)
         now = dot(residual, residual)
@@ -142,7 +164,8 @@ def solve_stage(
         else:
             size, share = now, 1.0
             stiffness, damping = tangents(leg, at, motion.loads, motion.damping)
-            implicit = product(mobility(leg, at), plus(times(h, damping), times(h * h, stiffness)))
+            slope = plus(times(h, plus(damping, ground_damping)), times(h * h, plus(stiffness, ground_stiffness)))
+            implicit = product(mobility(leg, at), slope)
             step = solve(plus(identity(1.0), implicit), residual)
             a = add(a, step)
             if h * h * dot(step, step) * h * h < (h * VELOCITY_TOLERANCE) ** 2:
@@ -186,7 +209,17 @@ def join(a: Course, b: Course) -> Course:
 @jit
 def load_at(load: PadLoad, t: float) -> PadLoad:
     """The pad's wrench t seconds into the interval."""
-    return PadLoad(axpy(t, load.force_slope, load.force), axpy(t, load.torque_slope, load.torque), load.force_slope, load.torque_slope)
+    return PadLoad(
+        axpy(t, load.force_slope, load.force),
+        axpy(t, load.torque_slope, load.torque),
+        load.force_slope,
+        load.torque_slope,
+        load.stiffness,
+        load.damping,
+        axpy(t, load.predicted_slope, load.predicted),
+        load.predicted_slope,
+        axpy(t, load.predicted, axpy(0.5 * t * t, load.predicted_slope, load.place)),
+    )
 
 
 @jit
@@ -199,7 +232,7 @@ def substep(
     r1 = rotation(s1.attitude)
     l1 = load_at(load, t + g)
     b1 = as_base(s1, gravity)
-    one = solve_stage(leg, b1, r1, state.position, state.velocity, state.attitude, ZERO, state.rate, l1, state.crush, g, guess)
+    one = solve_stage(leg, b1, s1, r1, state.position, state.velocity, state.attitude, ZERO, state.rate, l1, state.crush, g, guess)
     rest = h - g
     s2 = base_at(motion, t + h)
     r2 = rotation(s2.attitude)
@@ -207,7 +240,7 @@ def substep(
     b2 = as_base(s2, gravity)
     p0, v0 = axpy(rest, one.velocity, state.position), axpy(rest, one.motion.acceleration, state.velocity)
     w0 = axpy(rest, one.spin_up, state.rate)
-    two = solve_stage(leg, b2, r2, p0, v0, state.attitude, scale(rest, one.rate), w0, l2, state.crush, g, one.motion.acceleration)
+    two = solve_stage(leg, b2, s2, r2, p0, v0, state.attitude, scale(rest, one.rate), w0, l2, state.crush, g, one.motion.acceleration)
     course = join(
         stage_course(leg, one, r1, apply_transposed(r1, s1.velocity), l1, rest),
         stage_course(leg, two, r2, apply_transposed(r2, s2.velocity), l2, g),

@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import matrix, put_vector, quaternion, vector
+from .blocks import matrix, put_matrix, put_vector, quaternion, vector
 from .compiled import jit
 from .footpad import DEPTH, Footpad, PadMotion, Wrench, deepest, lever, pad_wrench, slid, start_memory
 from .soil import Soil
 from .soil_stepping import InterfaceModel, PadStart, Shift, SoilCourse, step_soil
 from .surface import Surface, gap_at, normal_at
-from .vectors import Vector, add, axpy, dot, rotation, scale
+from .vectors import Matrix, Vector, add, axpy, dot, rotation, scale, sub, times
 
 Array = NDArray[np.float64]
 PENETRATION, GAP, SKID, NORMAL, WORK = range(5)  # places in the report
@@ -74,27 +74,37 @@ def fit(impulse: Vector, moment: Vector, step: float, out: Array, place: int) ->
 
 @jit
 def start_soil(
-    soil: Soil, surface: Surface, pad: Footpad, port: Array, wrench: Array, predicted: Array, report: Array, memory: Array
+    soil: Soil, surface: Surface, pad: Footpad, port: Array, wrench: Array, predicted: Array, report: Array, contact: Array, memory: Array
 ) -> float:
     """Virgin soil under the pad where it is; returns the greatest depth of any point, m."""
     start = read_start(port)
     at = motion_of(start)
     start_memory(surface, pad, at, memory)
-    now, _ = pad_wrench(soil, surface, pad, at, memory)
+    now, ground = pad_wrench(soil, surface, pad, at, memory)
     for i in range(2):
         put_vector(wrench, 9 * i, now[i])
         put_vector(wrench, 9 * i + 3, now[i])
     write_predicted(at, start.rate, predicted)
     write_report(surface, pad, at, now, memory, report)
+    write_contact(ground.k_xx, ground.c_xx, contact)
     return deepest(memory)
 
 
 @jit
 def write_predicted(at: PadMotion, rate: Vector, predicted: Array) -> None:
-    """Position, velocity and angular velocity the soil expects the pad to have (9 numbers)."""
+    """Position, velocity (value and mean) and angular velocity the soil expects the pad to have (15 numbers, the velocity's slope kept)."""
     put_vector(predicted, 0, at.position)
     put_vector(predicted, 3, at.velocity)
-    put_vector(predicted, 6, rate)
+    put_vector(predicted, 6, at.velocity)
+    put_vector(predicted, 12, rate)
+
+
+@jit
+def write_contact(stiffness: Matrix, damping: Matrix, contact: Array) -> None:
+    """How the ground answers the pad's motion: -dF/dx and -dF/dv as value and mean, by rows (36 numbers)."""
+    for i in (0, 9):
+        put_matrix(contact, i, stiffness)
+        put_matrix(contact, 18 + i, damping)
 
 
 @jit
@@ -110,6 +120,7 @@ def advance_soil(
     wrench: Array,
     predicted: Array,
     report: Array,
+    contact: Array,
     memory: Array,
 ) -> tuple[bool, float]:
     """Take pad and soil over `step` seconds and fill the outputs; False where Newton gave up. Also the instant of contact, s (-1: none)."""
@@ -120,6 +131,8 @@ def advance_soil(
         return False, -1.0
     write_wrench(course, end, step, wrench)
     write_predicted(at, at.rate, predicted)
+    fit(sub(at.position, start.position), course.displacement_moment, step, predicted, 6)
     report[WORK] -= course.work
     write_report(surface, pad, at, end, memory, report)
+    write_contact(times(1.0 / step, course.stiffness), times(1.0 / step, course.damping), contact)
     return True, course.touch

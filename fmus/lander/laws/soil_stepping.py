@@ -87,6 +87,9 @@ class SoilCourse(NamedTuple):
     moment_impulse: Vector  # N s2
     moment_angular_impulse: Vector
     work: float  # J, done on the pad
+    displacement_moment: Vector  # of the pad's velocity times time, m s
+    stiffness: Matrix  # time integrals of the ground's tangents
+    damping: Matrix
     touch: float  # s since the start, of the first point entering the soil; -1: none
 
 
@@ -169,13 +172,13 @@ def soil_stage(
     b: Vector,
     matrix: Array,
     step: Array,
-) -> tuple[Travel, Vector, Vector, Wrench, PadMotion, bool]:
+) -> tuple[Travel, Vector, Vector, Wrench, PadMotion, bool, PadTangents]:
     """One stage at time t: (a, b) with v = v0 + h a(v, ...), Newton with backtracking. before: explicit part; h is γ times the substep."""
     best, share, ok = 1e300, 1.0, False
     da, db = ZERO, ZERO
     travel = before
     at = seen(start, travel, shift, t, interval)
-    wrench = Wrench(ZERO, ZERO)
+    wrench, tangents = pad_wrench(soil, surface, pad, at, memory)
     for _ in range(NEWTON_LIMIT * 2):
         v, w = axpy(h, a, before.velocity), axpy(h, b, before.rate)
         travel = Travel(axpy(h, v, before.displacement), axpy(h, w, before.turn), v, w)
@@ -200,11 +203,11 @@ def soil_stage(
         da, db = (step[0, 0], step[1, 0], step[2, 0]), (step[3, 0], step[4, 0], step[5, 0])
         a, b = add(a, da), add(b, db)
         ok = h * h * (dot(da, da) + GYRATION * GYRATION * dot(db, db)) < VELOCITY_TOLERANCE * VELOCITY_TOLERANCE
-    return travel, a, b, wrench, at, ok
+    return travel, a, b, wrench, at, ok, tangents
 
 
 @jit
-def add_stage(c: SoilCourse, wrench: Wrench, at: PadMotion, t: float, h: float) -> SoilCourse:
+def add_stage(c: SoilCourse, wrench: Wrench, ground: PadTangents, at: PadMotion, t: float, h: float) -> SoilCourse:
     """The course with a stage of weight h (s) at time t added."""
     return SoilCourse(
         axpy(h, wrench.force, c.impulse),
@@ -212,6 +215,9 @@ def add_stage(c: SoilCourse, wrench: Wrench, at: PadMotion, t: float, h: float) 
         axpy(h * t, wrench.force, c.moment_impulse),
         axpy(h * t, wrench.torque, c.moment_angular_impulse),
         c.work + h * pad_power(wrench, at),
+        axpy(h * t, at.velocity, c.displacement_moment),
+        plus(c.stiffness, times(h, ground.k_xx)),
+        plus(c.damping, times(h, ground.c_xx)),
         c.touch,
     )
 
@@ -219,7 +225,17 @@ def add_stage(c: SoilCourse, wrench: Wrench, at: PadMotion, t: float, h: float) 
 @jit
 def touched(c: SoilCourse, t: float) -> SoilCourse:
     """The course with the instant of contact."""
-    return SoilCourse(c.impulse, c.angular_impulse, c.moment_impulse, c.moment_angular_impulse, c.work, t)
+    return SoilCourse(
+        c.impulse,
+        c.angular_impulse,
+        c.moment_impulse,
+        c.moment_angular_impulse,
+        c.work,
+        c.displacement_moment,
+        c.stiffness,
+        c.damping,
+        t,
+    )
 
 
 @jit
@@ -242,7 +258,7 @@ def step_soil(
     full = interval / ceil(interval / longest - 1e-9)
     t, h = 0.0, full
     now = Travel(ZERO, ZERO, start.velocity, start.rate)
-    course = SoilCourse(ZERO, ZERO, ZERO, ZERO, 0.0, -1.0)
+    course = SoilCourse(ZERO, ZERO, ZERO, ZERO, 0.0, ZERO, identity(0.0), identity(0.0), -1.0)
     a, b = ZERO, ZERO
     at = seen(start, now, shift, 0.0, interval)
     wrench, _ = pad_wrench(soil, surface, pad, at, memory)
@@ -264,7 +280,7 @@ def step_soil(
             if h < SMALLEST_SHARE * full:
                 return at, attitude_of(start, now, shift, t, interval), wrench, course, False
             continue
-        course = add_stage(add_stage(course, one[3], one[4], t + g, rest), two[3], two[4], t + h, g)
+        course = add_stage(add_stage(course, one[3], one[6], one[4], t + g, rest), two[3], two[6], two[4], t + h, g)
         now, a, b, wrench, at = two[0], two[1], two[2], two[3], two[4]
         above = deepest(memory)
         remember(soil, surface, pad, at, memory)

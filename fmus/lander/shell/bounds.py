@@ -9,7 +9,7 @@ from ..laws.compiled import COMPILED, jit
 
 Floats = NDArray[np.float64]
 Slots = NDArray[np.intp]
-LARGEST = float(np.finfo(np.float64).max)   # a finite bound for all: neither infinity nor nan is within it
+LARGEST = float(np.finfo(np.float64).max)  # a finite bound for all: neither infinity nor nan is within it
 
 
 @jit

@@ -10,7 +10,7 @@ from .unit_strings import exponents
 if TYPE_CHECKING:
     from .unit import Unit
 
-MADE = "2000-01-01T00:00:00Z"      # no clock: the same content gives the same bytes
+MADE = "2000-01-01T00:00:00Z"  # no clock: the same content gives the same bytes
 CAPABILITIES = {
     "needsExecutionTool": "true",
     "canHandleVariableCommunicationStepSize": "true",
@@ -26,9 +26,18 @@ MESSAGE = "What the unit last had to complain of; empty when all is well."
 
 def model_description(unit: "type[Unit]", guid: str) -> Element:
     """The whole description; attributes in FMI's order."""
-    root = Element("fmiModelDescription", {
-        "fmiVersion": "2.0", "modelName": unit.__name__, "guid": guid, "description": " ".join(unit.description.split()),
-        "generationTool": "lander.shell with pythonfmu", "generationDateAndTime": MADE, "variableNamingConvention": "structured"})
+    root = Element(
+        "fmiModelDescription",
+        {
+            "fmiVersion": "2.0",
+            "modelName": unit.__name__,
+            "guid": guid,
+            "description": " ".join(unit.description.split()),
+            "generationTool": "lander.shell with pythonfmu",
+            "generationDateAndTime": MADE,
+            "variableNamingConvention": "structured",
+        },
+    )
     SubElement(root, "CoSimulation", {"modelIdentifier": unit.__name__, **CAPABILITIES})
     root.append(unit_definitions(unit.layout))
     categories = SubElement(root, "LogCategories")
@@ -39,9 +48,18 @@ def model_description(unit: "type[Unit]", guid: str) -> Element:
     variables = SubElement(root, "ModelVariables")
     for scalar in unit.layout.visible:
         variables.append(scalar_variable(scalar))
-    message = SubElement(variables, "ScalarVariable", {
-        "name": "message", "valueReference": str(unit.layout.size), "description": MESSAGE,
-        "causality": "local", "variability": "discrete", "initial": "calculated"})
+    message = SubElement(
+        variables,
+        "ScalarVariable",
+        {
+            "name": "message",
+            "valueReference": str(unit.layout.size),
+            "description": MESSAGE,
+            "causality": "local",
+            "variability": "discrete",
+            "initial": "calculated",
+        },
+    )
     SubElement(message, "String")
     root.append(model_structure(unit.layout, unit.initially))
     return root
@@ -66,8 +84,13 @@ def scalar_variable(scalar: Scalar) -> Element:
     record = scalar.record
     continuous = "continuous" if record.kind == "Real" else "discrete"
     variability = "fixed" if record.causality == "parameter" else continuous
-    attributes = {"name": scalar.name, "valueReference": str(scalar.slot), "description": " ".join(record.description.split()),
-                  "causality": record.causality, "variability": variability}
+    attributes = {
+        "name": scalar.name,
+        "valueReference": str(scalar.slot),
+        "description": " ".join(record.description.split()),
+        "causality": record.causality,
+        "variability": variability,
+    }
     if record.causality != "input":
         attributes["initial"] = "exact" if record.causality == "parameter" else "calculated"
     element = Element("ScalarVariable", attributes)

@@ -22,9 +22,11 @@ def documentation(unit: "type[Unit]") -> str:
     """The page."""
     records = [record for record in unit.layout.records if record.causality != "state"]
     head = f"<head><meta charset='utf-8'><title>{unit.__name__}</title><style>{STYLE}</style></head>"
-    parts = [f"<!DOCTYPE html><html lang='en'>{head}<body>",
-             f"<h1>{unit.__name__}</h1><p>{escape(unit.description)}</p><pre>{escape(inspect.getdoc(unit) or '')}</pre>",
-             f"<p>{escape(PROMISES)}</p>"]
+    parts = [
+        f"<!DOCTYPE html><html lang='en'>{head}<body>",
+        f"<h1>{unit.__name__}</h1><p>{escape(unit.description)}</p><pre>{escape(inspect.getdoc(unit) or '')}</pre>",
+        f"<p>{escape(PROMISES)}</p>",
+    ]
     named = ports(unit.layout)
     if named:
         parts.append(f"<h2>Ports</h2><p>{', '.join(escape(port) for port in named)}</p>")
@@ -37,8 +39,11 @@ def documentation(unit: "type[Unit]") -> str:
 
 def table(records: list[Record]) -> str:
     """One row a variable; a vector is one row."""
-    rows = "".join(f"<tr><td><code>{escape(shape(r))}</code></td><td>{escape(r.unit)}</td><td>{value(r)}</td><td>{limits(r)}</td>"
-                   f"<td>{escape(r.description)}</td></tr>\n" for r in records)
+    rows = "".join(
+        f"<tr><td><code>{escape(shape(r))}</code></td><td>{escape(r.unit)}</td><td>{value(r)}</td><td>{limits(r)}</td>"
+        f"<td>{escape(r.description)}</td></tr>\n"
+        for r in records
+    )
     return f"<table><tr><th>name</th><th>unit</th><th>start</th><th>range</th><th>meaning</th></tr>\n{rows}</table>"
 
 

@@ -8,10 +8,10 @@ import numpy as np
 from .bounds import LARGEST, Floats, Slots
 from .records import Record
 
-SHELL_STATES = ("shell.phase", "shell.stale", "shell.start_time")   # the shell's own hidden states, at the end of the memory
-MOST_ACCESSES = 1000     # a host asks for the same few sets of variables all the time; one that does not is not to fill the memory
+SHELL_STATES = ("shell.phase", "shell.stale", "shell.start_time")  # the shell's own hidden states, at the end of the memory
+MOST_ACCESSES = 1000  # a host asks for the same few sets of variables all the time; one that does not is not to fill the memory
 
-Access = tuple[Slots | slice, bool]    # where, and whether all of it are inputs
+Access = tuple[Slots | slice, bool]  # where, and whether all of it are inputs
 
 
 @dataclass(frozen=True)

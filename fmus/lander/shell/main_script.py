@@ -40,7 +40,7 @@ def cached_copy(package: Path, digest: str) -> Path:
             copy.parent.parent.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=copy.parent.parent) as unfinished:
                 shutil.copytree(package, Path(unfinished) / digest / package.name, ignore=shutil.ignore_patterns("__pycache__"))
-                with contextlib.suppress(OSError):      # another process was first
+                with contextlib.suppress(OSError):  # another process was first
                     (Path(unfinished) / digest).rename(copy.parent)
         return copy if source_digest(copy) == digest else package
     except (OSError, RuntimeError):

@@ -41,7 +41,7 @@ def packed(unit: type[Unit], folder: Path) -> Path:
     with zipfile.ZipFile(unfinished, "w") as archive:
         for entry in entries:
             archive.writestr(information(entry), entries[entry], compresslevel=6)
-    unfinished.replace(path)      # a reader finds the old file or the new one, whole
+    unfinished.replace(path)  # a reader finds the old file or the new one, whole
     return path
 
 

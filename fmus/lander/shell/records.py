@@ -22,12 +22,12 @@ class Record:
     vector: bool
     unit: str
     description: str
-    causality: str                          # parameter, input, output, local; state: hidden, saved with the FMU state
-    kind: str = "Real"                      # Real, Integer, Boolean
+    causality: str  # parameter, input, output, local; state: hidden, saved with the FMU state
+    kind: str = "Real"  # Real, Integer, Boolean
     minimum: float | None = None
     maximum: float | None = None
     nominal: float | None = None
-    depends: tuple[str, ...] = ()           # inputs that an output at a communication point depends on at that same point
+    depends: tuple[str, ...] = ()  # inputs that an output at a communication point depends on at that same point
     initially: tuple[str, ...] | None = None  # what its initial value depends on; None: all parameters, the unit's `initially`, depends
     companions: tuple[str, ...] = ()
 
@@ -42,8 +42,9 @@ class Record:
         if which == "slope":
             when = "coming" if self.causality == "input" else "last"
             text = f"slope of {self.name} over the {when} interval"
-            return replace(self, name=name, start=zeros, unit=rate_of(self.unit), description=text,
-                           minimum=None, maximum=None, nominal=None)
+            return replace(
+                self, name=name, start=zeros, unit=rate_of(self.unit), description=text, minimum=None, maximum=None, nominal=None
+            )
         if which == "mean":
             return replace(self, name=name, start=zeros, description=f"mean of {self.name} over the last interval")
         text = f"added to {self.name}: a socket for another effect"
@@ -62,33 +63,91 @@ def kind_of(integer: bool, boolean: bool) -> str:
     return "Integer" if integer else "Boolean" if boolean else "Real"
 
 
-def parameter(name: str, start: Start, unit: str, description: str, *, minimum: float | None = None, maximum: float | None = None,
-              nominal: float | None = None, integer: bool = False, boolean: bool = False) -> Record:
+def parameter(
+    name: str,
+    start: Start,
+    unit: str,
+    description: str,
+    *,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    nominal: float | None = None,
+    integer: bool = False,
+    boolean: bool = False,
+) -> Record:
     """A parameter: set before or during initialisation, fixed afterwards."""
-    return record("parameter", name, start, unit, description, minimum=minimum, maximum=maximum, nominal=nominal,
-                  kind=kind_of(integer, boolean))
+    return record(
+        "parameter", name, start, unit, description, minimum=minimum, maximum=maximum, nominal=nominal, kind=kind_of(integer, boolean)
+    )
 
 
-def input_(name: str, start: Start, unit: str, description: str, *, minimum: float | None = None, maximum: float | None = None,
-           nominal: float | None = None, integer: bool = False, boolean: bool = False, slope: bool = False, added: bool = False) -> Record:
+def input_(
+    name: str,
+    start: Start,
+    unit: str,
+    description: str,
+    *,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    nominal: float | None = None,
+    integer: bool = False,
+    boolean: bool = False,
+    slope: bool = False,
+    added: bool = False,
+) -> Record:
     """An input: its value at the start of the coming interval. `slope` adds `x_slope`, `added` the socket `x_added`."""
     companions = ("slope",) * slope + ("added",) * added
-    return record("input", name, start, unit, description, minimum=minimum, maximum=maximum, nominal=nominal,
-                  kind=kind_of(integer, boolean), companions=companions)
+    return record(
+        "input",
+        name,
+        start,
+        unit,
+        description,
+        minimum=minimum,
+        maximum=maximum,
+        nominal=nominal,
+        kind=kind_of(integer, boolean),
+        companions=companions,
+    )
 
 
-def output(name: str, start: Start, unit: str, description: str, *, minimum: float | None = None, maximum: float | None = None,
-           nominal: float | None = None, integer: bool = False, boolean: bool = False, mean: bool = False, slope: bool = False,
-           depends: Sequence[str] = (), initially: Sequence[str] | None = None) -> Record:
+def output(
+    name: str,
+    start: Start,
+    unit: str,
+    description: str,
+    *,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    nominal: float | None = None,
+    integer: bool = False,
+    boolean: bool = False,
+    mean: bool = False,
+    slope: bool = False,
+    depends: Sequence[str] = (),
+    initially: Sequence[str] | None = None,
+) -> Record:
     """An output: its value at the end of the last interval. `mean` and `slope` add `x_mean` and `x_slope` over it."""
     companions = ("mean",) * mean + ("slope",) * slope
-    return record("output", name, start, unit, description, minimum=minimum, maximum=maximum, nominal=nominal,
-                  kind=kind_of(integer, boolean), depends=tuple(depends),
-                  initially=None if initially is None else tuple(initially), companions=companions)
+    return record(
+        "output",
+        name,
+        start,
+        unit,
+        description,
+        minimum=minimum,
+        maximum=maximum,
+        nominal=nominal,
+        kind=kind_of(integer, boolean),
+        depends=tuple(depends),
+        initially=None if initially is None else tuple(initially),
+        companions=companions,
+    )
 
 
-def local(name: str, start: Start, unit: str, description: str, *, nominal: float | None = None, integer: bool = False,
-          boolean: bool = False) -> Record:
+def local(
+    name: str, start: Start, unit: str, description: str, *, nominal: float | None = None, integer: bool = False, boolean: bool = False
+) -> Record:
     """A quantity to look at, which nothing is connected to."""
     return record("local", name, start, unit, description, nominal=nominal, kind=kind_of(integer, boolean))
 

@@ -12,7 +12,7 @@ from .layout import Layout, Scalar
 if TYPE_CHECKING:
     from .unit import Unit
 
-FOLDER = Path(__file__).parents[2] / "reference"      # beside the package, not in it: results are no source
+FOLDER = Path(__file__).parents[2] / "reference"  # beside the package, not in it: results are no source
 
 
 def elements(layout: Layout, name: str) -> list[Scalar]:

@@ -26,6 +26,9 @@ def terminals_and_icons(unit: "type[Unit]") -> Element:
     for port, members in ports(unit.layout).items():
         terminal = SubElement(terminals, "Terminal", {"name": port, "matchingRule": "bus", "terminalKind": "lander.port"})
         for scalar in members:
-            SubElement(terminal, "TerminalMemberVariable", {
-                "variableName": scalar.name, "memberName": scalar.name.partition(".")[2], "variableKind": "signal"})
+            SubElement(
+                terminal,
+                "TerminalMemberVariable",
+                {"variableName": scalar.name, "memberName": scalar.name.partition(".")[2], "variableKind": "signal"},
+            )
     return root

@@ -18,9 +18,9 @@ from .bounds import Floats, first_outside
 from .layout import Checked, Layout
 from .records import Record, Start
 
-PHASE, STALE, START_TIME = -3, -2, -1                     # slots of the shell's own states
-SETTING, STEPPING, FAILED = 0.0, 1.0, 2.0                 # phases: before the end of initialisation, after it, after it failed
-LONGEST = 500                                             # characters of a foreign exception's text; a compiler's can be pages
+PHASE, STALE, START_TIME = -3, -2, -1  # slots of the shell's own states
+SETTING, STEPPING, FAILED = 0.0, 1.0, 2.0  # phases: before the end of initialisation, after it, after it failed
+LONGEST = 500  # characters of a foreign exception's text; a compiler's can be pages
 
 
 class UnitError(Exception):
@@ -46,9 +46,9 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     description: ClassVar[str] = ""
     variables: ClassVar[tuple[Record, ...]] = ()
-    initially: ClassVar[tuple[str, ...]] = ()        # inputs that initial values of outputs depend on, unless an output says otherwise
-    experiment: ClassVar[tuple[float, float, float]] = (0.0, 1.0, 1e-3)    # start, stop, step of the default experiment
-    reference_parameters: ClassVar[tuple[tuple[str, Start], ...]] = ()     # what the reference experiment changes
+    initially: ClassVar[tuple[str, ...]] = ()  # inputs that initial values of outputs depend on, unless an output says otherwise
+    experiment: ClassVar[tuple[float, float, float]] = (0.0, 1.0, 1e-3)  # start, stop, step of the default experiment
+    reference_parameters: ClassVar[tuple[tuple[str, Start], ...]] = ()  # what the reference experiment changes
     layout: ClassVar[Layout] = Layout(())
 
     def __init_subclass__(cls) -> None:
@@ -101,7 +101,7 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     def span(self, first: str, last: str) -> Floats:
         """A view of all that was declared from the first to the last of two variables, companions of the last not included."""
-        return self.memory[self.layout.slices[first].start:self.layout.slices[last].stop]
+        return self.memory[self.layout.slices[first].start : self.layout.slices[last].stop]
 
     @property
     def start_time(self) -> float:
@@ -250,15 +250,16 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     @staticmethod
     def _fmu_state_from_bytes(state: bytes) -> Saved:
-        return Saved(np.frombuffer(state[:len(state) // 8 * 8]).copy(), None)
+        return Saved(np.frombuffer(state[: len(state) // 8 * 8]).copy(), None)
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         from .description import model_description
+
         return model_description(type(self), str(self.guid))
 
 
 def reason(error: Exception) -> str:
     """One line for a log: a UnitError's own words, or a foreign exception with its type."""
     text = " ".join(str(error).split())
-    text = text if len(text) <= LONGEST else f"{text[:LONGEST // 2]} ... {text[-LONGEST // 2:]}"
+    text = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
     return text if isinstance(error, UnitError) else f"{type(error).__name__}: {text}"

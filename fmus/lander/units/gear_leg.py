@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 POSE = ("body.position", "body.quaternion")
 TWIST = (*POSE, "body.velocity", "body.angular_velocity")
 MOTION = (*TWIST, "body.acceleration", "body.angular_acceleration")
+GROUND = (*POSE, "pad.contact_stiffness", "pad.contact_damping")
 LOADED = (*MOTION, "pad.force", "pad.force_added")
 
 
@@ -25,6 +26,8 @@ class GearLeg(Unit):
 
     The ball joint's position relative to the body is the leg's only coordinate (three stroking freedoms, no constraint); the pad turns on
     its ball joint. Honeycomb: eqs. 1 to 4 of the paper, stages latching, memory per core, saturated damping, bearing friction, stops.
+    Where the soil says how its force answers the pad's motion (pad.contact_* about pad.predicted_velocity) the leg steps with it:
+    both sides of the contact know the other's slope, and a pad that sticks to the ground stays put.
     SDIRK2 inside, at most `longest_substep` long. The base moves from its pose and twist at the interval's start with the given
     accelerations.
 
@@ -79,6 +82,9 @@ class GearLeg(Unit):
         input_("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, slope=True),
         input_("pad.force", (0.0, 0.0, 0.0), "N", "on the pad, frame L", nominal=1e4, slope=True, added=True),
         input_("pad.torque", (0.0, 0.0, 0.0), "N.m", "on the pad about the ball joint, frame L", nominal=1e3, slope=True, added=True),
+        input_("pad.contact_stiffness", (0.0,) * 9, "N/m", "-dF/dx of the ground, by rows, frame L", nominal=1e7),
+        input_("pad.contact_damping", (0.0,) * 9, "N.s/m", "-dF/dv of the ground, by rows, frame L", nominal=1e6),
+        input_("pad.predicted_velocity", (0.0, 0.0, 0.0), "m/s", "of the pad as the soil saw it, frame L", nominal=1.0, slope=True),
         output(
             "mount.force",
             (0.0, 0.0, 0.0),
@@ -99,6 +105,23 @@ class GearLeg(Unit):
             slope=True,
             initially=LOADED,
         ),
+        output("mount.model_lever", (0.0,) * 3, "m", "p: the ball joint from B's origin, frame B", nominal=1.0, initially=POSE),
+        output("mount.model_mass", (0.0,) * 9, "kg", "M felt at the ball joint, by rows, frame B", nominal=10.0, initially=POSE),
+        output(
+            "mount.model_straight",
+            (0.0,) * 9,
+            "kg",
+            "inertia force on the ball joint by the base's acceleration",
+            nominal=10.0,
+            initially=POSE,
+        ),
+        output("mount.model_turning", (0.0,) * 9, "kg.m", "the same by its angular acceleration", nominal=100.0, initially=POSE),
+        output(
+            "mount.model_stiffness", (0.0,) * 9, "N/m", "K of the struts at the ball joint, by rows, frame B", nominal=1e7, initially=LOADED
+        ),
+        output("mount.model_damping", (0.0,) * 9, "N.s/m", "D of the struts, by rows, frame B", nominal=1e5, initially=LOADED),
+        output("mount.model_ground_stiffness", (0.0,) * 9, "N/m", "of the ground under the pad, frame B", nominal=1e7, initially=GROUND),
+        output("mount.model_ground_damping", (0.0,) * 9, "N.s/m", "of the ground under the pad, frame B", nominal=1e6, initially=GROUND),
         output("pad.position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0, initially=POSE),
         output("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0, initially=POSE),
         output("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0, initially=TWIST),
@@ -163,9 +186,14 @@ class GearLeg(Unit):
 
     def prepare(self) -> None:
         self.leg = leg_of(self, self.value("azimuth"), self.value("vehicle_mass"))
-        self.inputs = self.span("body.position", "body.angular_acceleration_slope"), self.span("pad.force", "pad.torque_added")
+        self.inputs = (
+            self.span("body.position", "body.angular_acceleration_slope"),
+            self.span("pad.force", "pad.torque_added"),
+            self.span("pad.contact_stiffness", "pad.predicted_velocity_slope"),
+        )
         self.outputs = (
             self.span("mount.force", "mount.torque_slope"),
+            self.span("mount.model_lever", "mount.model_ground_damping"),
             self.span("pad.position", "pad.angular_velocity"),
             self.span("pad.model_acceleration", "pad.model_strut_rate"),
             self.span("primary.stroke", "left.peak_stroke"),

@@ -63,8 +63,10 @@ class RegolithContact(Unit):
         output("pad.force", (0.0, 0.0, 0.0), "N", "on the pad, frame L", nominal=1e4, mean=True, slope=True),
         output("pad.torque", (0.0, 0.0, 0.0), "N.m", "on the pad about the ball joint, frame L", nominal=1e3, mean=True, slope=True),
         output("pad.predicted_position", (0.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
-        output("pad.predicted_velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
+        output("pad.predicted_velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0, mean=True, slope=True),
         output("pad.predicted_angular_velocity", (0.0, 0.0, 0.0), "rad/s", "frame L", nominal=1.0),
+        output("pad.contact_stiffness", (0.0,) * 9, "N/m", "-dF/dx of the ground, by rows, frame L", nominal=1e7, mean=True),
+        output("pad.contact_damping", (0.0,) * 9, "N.s/m", "-dF/dv of the ground, by rows, frame L", nominal=1e6, mean=True),
         output("penetration", 0.0, "m", "depth of the pad's centre below the surface", nominal=0.05),
         output("gap", 0.0, "m", "height of the lowest point above the surface along L's x; negative in the soil", nominal=0.1),
         output("skid", 0.0, "m", "slide of the pad's centre in the soil since first contact", nominal=0.1),
@@ -83,6 +85,7 @@ class RegolithContact(Unit):
             self.span("pad.force", "pad.torque_slope"),
             self.span("pad.predicted_position", "pad.predicted_angular_velocity"),
             self.span("penetration", "pad.work"),
+            self.span("pad.contact_stiffness", "pad.contact_damping_mean"),
             self["points"].reshape(POINTS, COLUMNS),
         )
         self.model = self.span("pad.model_acceleration", "pad.model_strut_rate")

@@ -3,15 +3,34 @@
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..laws.impedance import NUMBERS, corrections
 from ..laws.rigid_body import Body, BodyLoad, BodyState, body_energy, body_rate, inertia_matrix, step_body, wrench_work
-from ..laws.vectors import ZERO, Vector, add, apply, from_yaw_pitch_roll, rotation, scale, sub, yaw_pitch_roll
+from ..laws.vectors import ZERO, Vector, add, apply, apply_transposed, from_yaw_pitch_roll, rotation, scale, sub, yaw_pitch_roll
 from ..shell import Unit, input_, output, parameter
+from ..shell.records import Record
 
-PORTS = (*(f"leg{k}" for k in range(1, 9)), "engine", *(f"effect{k}" for k in range(1, 5)))
+Array = NDArray[np.float64]
+LEGS = tuple(f"leg{k}" for k in range(1, 9))
+PORTS = (*LEGS, "engine", *(f"effect{k}" for k in range(1, 5)))
 LONGEST = 1e-3  # s, Runge-Kutta step: its error per step is below 1e-12 of the motion at rates of 1 rad/s
 UNLOADED = BodyLoad(ZERO, ZERO, ZERO, ZERO)
 WRENCH = 18  # numbers of one wrench port: force, slope, added, torque, slope, added
+
+
+def model_inputs(port: str) -> tuple[Record, ...]:
+    """How the wrench of a leg answers the body's motion, as GearLeg's `mount.model_*` gives it; zero: not known."""
+    return (
+        input_(f"{port}.model_lever", (0.0,) * 3, "m", "the ball joint from B's origin, frame B", nominal=1.0),
+        input_(f"{port}.model_mass", (0.0,) * 9, "kg", "felt at the ball joint, by rows, frame B", nominal=10.0),
+        input_(f"{port}.model_straight", (0.0,) * 9, "kg", "inertia force on the ball joint by the base's acceleration", nominal=10.0),
+        input_(f"{port}.model_turning", (0.0,) * 9, "kg.m", "the same by its angular acceleration", nominal=100.0),
+        input_(f"{port}.model_stiffness", (0.0,) * 9, "N/m", "of the struts at the ball joint, by rows, frame B", nominal=1e7),
+        input_(f"{port}.model_damping", (0.0,) * 9, "N.s/m", "of the struts, by rows, frame B", nominal=1e5),
+        input_(f"{port}.model_ground_stiffness", (0.0,) * 9, "N/m", "of the ground under the pad, frame B", nominal=1e7),
+        input_(f"{port}.model_ground_damping", (0.0,) * 9, "N.s/m", "of the ground under the pad, frame B", nominal=1e6),
+    )
 
 
 class VehicleBody(Unit):
@@ -21,6 +40,8 @@ class VehicleBody(Unit):
 
     Every wrench is given in B about B's origin, which is the composite centre of mass. Attitude: R(B to L) = Rz(roll) Ry(pitch) Rx(yaw);
     pitch is positive nose up, roll right side down, yaw nose left. Velocity at the start is given in B, as Table 5 does.
+    Where legs offer a model of how their wrench answers (legK.model_*) and the master says what the body reached in the pass before
+    (body.reference_*), the mean wrenches of that pass are corrected for what the body now does otherwise (laws/impedance.py).
     Outputs with mean and slope are those of the motion just made, so that a leg stepped afterwards moves its base exactly as the body did.
     """
 
@@ -46,6 +67,10 @@ class VehicleBody(Unit):
                 ),
             )
         ),
+        input_("body.reference_velocity", (0.0, 0.0, 0.0), "m/s", "body.velocity reached in the last pass, frame L", nominal=1.0),
+        input_("body.reference_angular_velocity", (0.0, 0.0, 0.0), "rad/s", "body.angular_velocity reached in the last pass", nominal=0.1),
+        input_("body.reference_valid", 0.0, "1", "1 where there was a last pass over this interval, else 0", nominal=1.0),
+        *(record for port in LEGS for record in model_inputs(port)),
         output("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
         output("body.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "attitude (w, x, y, z), B to L", nominal=1.0),
         output("body.velocity", (0.0, 0.0, 0.0), "m/s", "of the origin of B, frame L", nominal=1.0),
@@ -68,6 +93,7 @@ class VehicleBody(Unit):
     def prepare(self) -> None:
         inertia = inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"]))
         self.body = Body(self.value("mass"), inertia, self.value("gravity"))
+        self.models = self.span(f"{LEGS[0]}.model_lever", f"{LEGS[-1]}.model_ground_damping").reshape(len(LEGS), NUMBERS)
 
     def initialise(self) -> None:
         attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
@@ -85,7 +111,7 @@ class VehicleBody(Unit):
             triple(self["body.position"]), (q[0], q[1], q[2], q[3]), triple(self["body.velocity"]), triple(self["body.angular_velocity"])
         )
 
-    def wrenches(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    def wrenches(self) -> Array:
         """One row a port: force, slope, added, torque, slope, added."""
         return self.span(f"{PORTS[0]}.force", f"{PORTS[-1]}.torque_added").reshape(len(PORTS), WRENCH)
 
@@ -97,6 +123,10 @@ class VehicleBody(Unit):
 
     def advance(self, time: float, step: float) -> None:
         before, load = self.state(), self.load()
+        changes = self.corrections(before, load, step)
+        if changes is not None:
+            force, torque = triple(changes[:, :3].sum(axis=0)), triple(changes[:, 3:].sum(axis=0))
+            load = BodyLoad(add(load.force, force), add(load.torque, torque), load.force_slope, load.torque_slope)
         first = body_rate(self.body, before, load, 0.0)
         now = step_body(self.body, before, load, step, LONGEST)
         last = body_rate(self.body, now, load, step)
@@ -106,11 +136,22 @@ class VehicleBody(Unit):
         self["body.angular_acceleration_mean"] = scale(1.0 / step, sub(now.rate, before.rate))
         self["body.acceleration_slope"] = scale(1.0 / step, sub(last.acceleration, first.acceleration))
         self["body.angular_acceleration_slope"] = scale(1.0 / step, sub(last.spin_up, first.spin_up))
-        for port, row in zip(PORTS, self.wrenches(), strict=True):
+        for k, (port, row) in enumerate(zip(PORTS, self.wrenches(), strict=True)):
             if row.any():
                 r = row.tolist()
                 force, torque = add(vector(r, 0), vector(r, 6)), add(vector(r, 9), vector(r, 15))
+                if changes is not None and k < len(LEGS):
+                    force, torque = add(force, triple(changes[k, :3])), add(torque, triple(changes[k, 3:]))
                 self[f"{port}.work"] += wrench_work(before, now, BodyLoad(force, torque, vector(r, 3), vector(r, 12)), step)
+
+    def corrections(self, before: BodyState, load: BodyLoad, step: float) -> Array | None:
+        """What the legs' mean wrenches change by, because the body moves otherwise than in the pass before; None without such a pass."""
+        if not self.value("body.reference_valid"):
+            return None
+        trial = step_body(self.body, before, load, step, LONGEST)
+        moved = apply_transposed(rotation(trial.attitude), sub(trial.velocity, triple(self["body.reference_velocity"])))
+        turned = sub(trial.rate, triple(self["body.reference_angular_velocity"]))
+        return corrections(self.models, self.body.mass, self.body.inertia, moved, turned, step)
 
     def show(self, now: BodyState) -> None:
         """Fill what follows from the state."""
@@ -121,7 +162,7 @@ class VehicleBody(Unit):
         self.span("energy.kinetic", "energy.potential")[:] = body_energy(self.body, now)
 
 
-def triple(view: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Vector:
+def triple(view: Array) -> Vector:
     """A view of three numbers as a tuple."""
     x, y, z = view.tolist()
     return (x, y, z)
