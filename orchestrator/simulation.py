@@ -182,6 +182,7 @@ class Simulation:
             steps=slave.steps,
             seconds=slave.seconds,
             parameters=dict(self.blueprint.values[place]),
+            trial=master.trials[place],
         )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import nan
 from time import perf_counter
 
-from orchestrator.master.checks import check_finite, truly_rolls_back
+from orchestrator.master.checks import check_finite
 from orchestrator.master.coupling import check_asked, connection_records, couple
 from orchestrator.master.estimates import Estimates
 from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, judge, step_limits
@@ -20,6 +20,7 @@ from orchestrator.master.slave import Vector
 from orchestrator.master.start import Values, initialise
 from orchestrator.master.sweep import Sweep, jobs_of
 from orchestrator.master.system import System
+from orchestrator.master.trials import Trial, warnings_of
 from orchestrator.master.watchdog import Watchdog
 
 StepListener = Callable[[float], None]
@@ -59,8 +60,9 @@ class Master:
         """Outputs at the start, consistent with each other; may be called again with other values."""
         self._time = in_ns(start)
         self._begin, self._stop = self._time, in_ns(stop)
+        self._initialise_again: Callable[[], None] = lambda: initialise(self.plan, self._start_jobs, start, stop, values)
         self.watchdog.where = lambda: f" at t = {self._time / NANOSECONDS:.9g} s"
-        initialise(self.plan, self._start_jobs, start, stop, values)
+        self._initialise_again()
 
     def value(self, unit: int, name: str) -> float:
         """An output, as of now."""
@@ -71,8 +73,7 @@ class Master:
         system = self.system
         check_asked(self.plan)
         check_finite(self.plan, self._time)
-        probe = self.limits.maximum
-        self.rollback = [truly_rolls_back(self.plan, unit, self._time, probe, self.warnings) for unit in self._everyone]
+        self._try_units()
         able = [can and slave.name not in system.once for can, slave in zip(self.rollback, system.slaves, strict=True)]
         self._able = together(able, self.plan.reduced)
         self._savers = [slave for slave, can in zip(system.slaves, self.rollback, strict=True) if can]
@@ -81,6 +82,18 @@ class Master:
         self._fix_interval()
         for slave in system.slaves:
             slave.steps, slave.seconds = 0, 0.0
+
+    def _try_units(self) -> None:
+        """What each can do; a unit that cannot be put back by its own means is by initialising all again."""
+        trials = [Trial(self.plan, unit, self._time, self.watchdog) for unit in self._everyone]
+        with self.watchdog:
+            for slave, trial in zip(self.system.slaves, trials, strict=True):
+                trial.run(self.limits.maximum, self.limits.minimum)
+                self.warnings += warnings_of(slave.name, trial.record)
+        self.trials = [trial.record for trial in trials]
+        self.rollback = [record.rollback == "true" for record in self.trials]
+        if any(trial.spoilt for trial in trials):
+            self._initialise_again()
 
     def _couple(self) -> None:
         """Everything that follows from how the connections are coupled."""

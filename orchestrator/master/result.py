@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import nan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -63,6 +64,27 @@ class ConnectionRecord:
 
 
 @dataclass(frozen=True)
+class TrialRecord:
+    """What a unit can do: "true" where a claim was tried and held, "claimed", "claimed, not true" or "not claimed"."""
+
+    rollback: str
+    serialisation: str
+    variable_step: bool
+    """As claimed."""
+    slopes: int
+    """Connected inputs that have a slope input beside them."""
+    interpolates: bool
+    """Takes slopes by the standard call."""
+    step_size_difference: float = nan
+    """Largest difference between one step and two of half its length, by the larger of value and nominal; NaN: not tried."""
+    step_size_variable: str = ""
+    """The output it was found at."""
+
+    def but(self, **changes: Any) -> TrialRecord:
+        return replace(self, **changes)
+
+
+@dataclass(frozen=True)
 class UnitRecord:
     """What a unit is, what it can do, how it was stepped and what that cost."""
 
@@ -87,6 +109,8 @@ class UnitRecord:
     """Wall time inside the unit (doStep, get, set, states), s."""
     parameters: dict[str, float | int | bool | str]
     """Parameters the run set, variable name -> value."""
+    trial: TrialRecord | None = None
+    """What it was found able to do before the first step."""
 
 
 @dataclass

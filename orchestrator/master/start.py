@@ -28,7 +28,7 @@ def initialise(plan: Plan, jobs: Sequence[Job], start: float, stop: float, value
     A unit that computes its outputs only when it leaves initialisation mode is served too: inputs are gathered again before each leave.
     """
     board = plan.board
-    board.values[:] = 0.0
+    board.values[:-1] = 0.0      # the last is 1
     for job in jobs:
         job.slave.set_up(start, stop, values[job.unit])
     for _ in range(len(jobs) + 1):

@@ -1,8 +1,9 @@
 """How the run was stepped, what that cost, and whether the connections kept the energy they carried."""
 
+from dataclasses import asdict
 from typing import Any
 
-from orchestrator.master.result import LedgerRow, RunResult
+from orchestrator.master.result import LedgerRow, RunResult, TrialRecord
 from orchestrator.results.channels import finite
 
 LEAK_OF_THROUGHPUT = 0.01
@@ -25,7 +26,13 @@ def master(result: RunResult) -> dict[str, Any]:
         "unit_steps_each": {record.name: record.steps for record in result.unit_records},
         "unit_seconds_each": {record.name: record.seconds for record in result.unit_records},
         "rollback": {record.name: record.rollback for record in result.unit_records},
+        "trials": {record.name: _trial(record.trial) for record in result.unit_records if record.trial is not None},
+        "connections": [asdict(record) for record in result.connections],
     }
+
+
+def _trial(record: TrialRecord) -> dict[str, Any]:
+    return asdict(record) | {"step_size_difference": finite(record.step_size_difference)}
 
 
 def ledger(rows: list[LedgerRow], initial: float | None) -> list[dict[str, Any]]:
