@@ -9,6 +9,7 @@ from time import perf_counter
 from orchestrator.master.checks import check_finite
 from orchestrator.master.coupling import check_asked, connection_records, couple
 from orchestrator.master.estimates import Estimates
+from orchestrator.master.guard import Guard
 from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, judge, step_limits
 from orchestrator.master.plan import Phase, make_plan
 from orchestrator.master.recorder import Ledger, Recorder
@@ -101,6 +102,8 @@ class Master:
         self.repeated = self.coupling.repeated
         self._sweep = Sweep(self.plan, self.coupling, self.settings, self.watchdog)
         self._passes = self.settings.passes if self.coupling.needs_passes else 1
+        once = {at for at, slave in enumerate(self.system.slaves) if slave.name in self.system.once}
+        self._guard = Guard(self.plan, [pair for pair in self.coupling.explicit if not pair & once])
         self._estimates = Estimates(self.plan, self.coupling, self._sweep.blocks, self._passes, self.settings)
 
     def _fix_interval(self) -> None:
@@ -241,6 +244,7 @@ class Master:
         self.plan.board.now[:] = self.plan.board.start
 
     def _accept(self, interval: int) -> None:
+        self._guard.check(self._time, interval)
         self._time += interval
         self.ledger.enter()
         self._record(last=self._time >= self._stop)
