@@ -20,6 +20,7 @@ from orchestrator.master.slave import Kind
 from orchestrator.master.system import Link, Scheme, System
 
 UnitPair = frozenset[int]
+MODEL = ".model_"
 
 
 @dataclass(frozen=True)
@@ -123,10 +124,21 @@ def _may_be_line(plan: Plan, link: Link, repeated: Sequence[bool], switched: Col
     variable = system.slaves[link.source_unit].interface.variables[link.source]
     if not _both(link, repeated) or variable.kind is not Kind.REAL or link.scheme is Scheme.EXPLICIT:
         return False
-    if any(pair_of(link) == {port.owner, port.partner} for port in plan.reduced):
+    if any(pair_of(link) == {port.owner, port.partner} for port in plan.reduced) or _speaks_model(plan, link):
         return False
-    without_mean = (link.source_unit, companion(link.source, "_mean")) not in plan.board.place
-    return without_mean or link.scheme is Scheme.NEWTON or (link.scheme is None and pair_of(link) in switched)
+    return _gives_no_mean(plan, link) or link.scheme is Scheme.NEWTON or (link.scheme is None and pair_of(link) in switched)
+
+
+def _speaks_model(plan: Plan, link: Link) -> bool:
+    """Whether one of the two tells the other how its effort answers (`model_*`): Newton's step is then taken inside that unit."""
+    return any(MODEL in other.target for other in plan.system.links if pair_of(other) == pair_of(link))
+
+
+def _gives_no_mean(plan: Plan, link: Link) -> bool:
+    """Whether nothing goes from this source to this target that a second pass would find changed."""
+    ends = link.source_unit, link.target_unit
+    alongside = [other for other in plan.system.links if (other.source_unit, other.target_unit) == ends]
+    return not any((other.source_unit, companion(other.source, "_mean")) in plan.board.place for other in alongside)
 
 
 def _both(link: Link, repeated: Sequence[bool]) -> bool:

@@ -5,14 +5,17 @@ Tolerance: 2e-4 of the peak penetration with at most 350 steps of the pad; the s
 1.52e-4 with 221. Lines between the ends of an interval are of order 2.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from master_samples import error_of as oscillator_error
-from master_samples import oscillator
+from master_samples import links, mass, oscillator, prepared, spring
 from quarter_vehicle import error_of, pad_steps, peak, quarter_vehicle
 
 from orchestrator.master.settings import MasterSettings
-from orchestrator.master.system import Scheme
+from orchestrator.master.slave import Variable
+from orchestrator.master.system import Link, Scheme, System
 from orchestrator.master.trust import distrust
 
 
@@ -63,10 +66,9 @@ def test_it_is_chosen_where_passes_would_find_nothing_changed() -> None:
     assert [(record.first, record.second) for record in master.connections()] == [("vehicle.pad", "soil.pad")]
 
 
-@pytest.mark.parametrize("scheme", [Scheme.EXPLICIT, Scheme.PASSES])
-def test_what_was_asked_for_instead_does_not_hold_and_says_so(scheme: Scheme) -> None:
-    master = quarter_vehicle(MasterSettings(min_interval=1e-3), scheme)
-    assert [record.scheme for record in master.connections()] == [scheme]
+def test_fixed_point_iteration_asked_for_instead_does_not_hold_and_says_so() -> None:
+    master = quarter_vehicle(MasterSettings(min_interval=1e-3), Scheme.PASSES)
+    assert [record.scheme for record in master.connections()] == [Scheme.PASSES]
     master.run()
     assert "steps missed the tolerance" in distrust(master, "case.toml")
 
@@ -97,3 +99,19 @@ def test_two_runs_agree_to_the_bit() -> None:
         master.run()
     assert runs[0].plan.board.now.tobytes() == runs[1].plan.board.now.tobytes()
     assert [row.interval for row in runs[0].log] == [row.interval for row in runs[1].log]
+
+
+def test_passes_stay_where_anything_between_two_units_comes_with_its_mean() -> None:
+    """A member without mean beside it, as the numbers of a model are, does not turn a connection into a quasi-Newton."""
+    told = spring()
+    inner = told._advance
+    told.interface = replace(told.interface, variables={**told.interface.variables, "hint": Variable("hint", causality="output")})
+    heard = mass("b", 2.0, 1.2)
+    heard.interface = replace(heard.interface, variables={**heard.interface.variables, "hint": Variable("hint", causality="input")})
+    told._advance = lambda s, u, t, h: inner(s, u, t, h) | {"hint": 1.0}
+    observe = told._observe
+    told._observe = lambda s, u: observe(s, u) | {"hint": 1.0}
+    extra = [Link(2, "hint", 1, "hint"), Link(1, "x", 2, "position")]
+    told.interface = replace(told.interface, variables={**told.interface.variables, "position": Variable("position", causality="input")})
+    master = prepared(System([mass("a", 1.0, 0.0), heard, told], [*links(), *extra]), MasterSettings())
+    assert {record.scheme for record in master.connections()} == {"fixed-point"}
