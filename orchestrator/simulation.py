@@ -45,10 +45,15 @@ class Simulation:
         table = self.blueprint.scenario.table
         if schedule is not None:
             schedule.check(self.master)
-        if table.start is None:
-            self._initialise(self.blueprint.values)
-        else:
-            self._solve_start(table.start)
+        try:
+            if table.start is None:
+                self._initialise(self.blueprint.values)
+            else:
+                self._solve_start(table.start)
+        except UnitError:
+            self._refuse_complaints()  # the cause of a start that cannot be solved, if a unit named one
+            raise
+        self._refuse_complaints()
         self.master.prepare()
         if schedule is not None:
             schedule.begin(self.master, self.blueprint, fresh=True)
@@ -92,6 +97,12 @@ class Simulation:
         on_hang = self.on_hang
         if on_hang is not None:
             self.master.watchdog.on_hang = lambda message: on_hang(self._result(message))
+
+    def _refuse_complaints(self) -> None:
+        """A UnitError in the units' own words if any could not be initialised: their outputs are mere start values then."""
+        said = [f"{slave.name}: {words}" for slave in self.system.slaves if (words := getattr(slave, "complaint", ""))]
+        if said:
+            raise UnitError(f"{self.blueprint.scenario.where}: {'; '.join(said)}")
 
     def _initialise(self, values: Sequence[dict[str, Value]]) -> None:
         table = self.blueprint.scenario.table

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from typing import Any
+from weakref import WeakValueDictionary
 
 from fmpy import calloc, free
 from fmpy.fmi2 import (
@@ -15,15 +16,24 @@ from fmpy.fmi2 import (
 from fmpy.logging import addLoggerProxy
 
 _KEPT = 1000
+_ERROR = 3
+_LOGS: WeakValueDictionary[bytes, MessageLog] = WeakValueDictionary()
 
 
 class MessageLog:
-    """Callbacks for one instance; the last `_KEPT` messages."""
+    """Callbacks for one instance; the last `_KEPT` messages.
+
+    fmpy's logger proxy has one target for the whole process, the callback registered last: a message is handed on by the
+    instance's name it carries.
+    """
 
     def __init__(self, unit: str) -> None:
         self.unit = unit
         self.messages: list[str] = []
         self._worst = ""
+        self.complaint = ""
+        """The last message with status error since `forget`."""
+        _LOGS[unit.encode()] = self
         self.callbacks: Any = fmi2CallbackFunctions()
         self.callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
         self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
@@ -31,13 +41,23 @@ class MessageLog:
         # C loggers are variadic; the proxy formats the message before Python sees it.
         addLoggerProxy(ctypes.byref(self.callbacks))
 
-    def _keep(self, _environment: Any, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
+    def _keep(self, _environment: Any, name: bytes, status: int, _category: bytes, message: bytes) -> None:
+        _LOGS.get(name, self).take(status, message)
+
+    def take(self, status: int, message: bytes) -> None:
+        """One message of this instance."""
         text = " ".join((message or b"").decode("utf-8", "replace").split())
         if text:
             self.messages.append(text)
             del self.messages[:-_KEPT]
             if status > 0:
                 self._worst = text
+            if status >= _ERROR:
+                self.complaint = text
+
+    def forget(self) -> None:
+        """Before a new start: what went wrong at the last one does not count."""
+        self.complaint = ""
 
     def last(self) -> str:
         """The last thing worth telling: a warning or worse if there was one."""

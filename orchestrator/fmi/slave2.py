@@ -57,6 +57,11 @@ class Fmi2Unit:
     def messages(self) -> list[str]:
         return self._log.messages
 
+    @property
+    def complaint(self) -> str:
+        """What the unit logged as an error since its last start; an initialisation may fail in no other way (decision 2)."""
+        return self._log.complaint
+
     def bind(self, binding: Binding) -> None:
         dll, component = self._dll, self._component
         inputs, rates, outputs = (
@@ -83,6 +88,7 @@ class Fmi2Unit:
         if self._used:
             self._check("reset", self._dll.fmi2Reset(self._component))
         self._used = True
+        self._log.forget()
         self._make([single_value(self._dll, self._component, self.interface.variables[name], value) for name, value in values.items()])
         self._check("setupExperiment", self._dll.fmi2SetupExperiment(self._component, 0, 0.0, start, 1, stop))
         self._check("enterInitializationMode", self._dll.fmi2EnterInitializationMode(self._component))

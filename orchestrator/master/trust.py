@@ -11,6 +11,9 @@ from orchestrator.master.result import Attempt, LedgerRow
 
 _NEGLIGIBLE = 0.01
 """A connection that carried less than this share of the busiest one's work is judged against that share."""
+_SHARE_OF_MOTION = 1e-3
+"""A leak below this share of the kinetic energy at the start harms nothing."""
+_MOTION = ".energy.kinetic"
 
 
 def distrust(master: Master, where: str) -> str:
@@ -18,7 +21,7 @@ def distrust(master: Master, where: str) -> str:
     accepted = [row for row in master.log if row.accepted]
     if master.unresolved > master.settings.unresolved_limit * len(accepted):
         return f"{where}: {_missed_tolerance(master, accepted)}"
-    leaking = worst_leak(master.ledger.rows(), master.settings.ledger_limit)
+    leaking = worst_leak(master.ledger.rows(), master.settings.ledger_limit, _SHARE_OF_MOTION * _motion(master))
     if leaking is not None:
         return (
             f"{where}: {leaking.first} <-> {leaking.second}: the coupling made {leaking.leak:.4g} J of {leaking.throughput:.4g} J"
@@ -28,10 +31,16 @@ def distrust(master: Master, where: str) -> str:
     return ""
 
 
-def worst_leak(rows: Sequence[LedgerRow], limit: float) -> LedgerRow | None:
-    """The connection whose energy ledger closes worst, if it fails the limit."""
+def _motion(master: Master) -> float:
+    """Kinetic energy of all units at the start, J, as far as they report and the run recorded it."""
+    columns = master.recorder.columns()
+    return float(sum(abs(column[0]) for name, column in columns.items() if name.endswith(_MOTION) and len(column)))
+
+
+def worst_leak(rows: Sequence[LedgerRow], limit: float, harmless: float = 0.0) -> LedgerRow | None:
+    """The connection whose energy ledger closes worst, if it fails the limit by more than `harmless` (J)."""
     floor = _NEGLIGIBLE * max((row.throughput for row in rows), default=0.0)
-    failing = [row for row in rows if abs(row.leak) > limit * max(row.throughput, floor)]
+    failing = [row for row in rows if abs(row.leak) > max(harmless, limit * max(row.throughput, floor))]
     return max(failing, key=lambda row: abs(row.leak)) if failing else None
 
 

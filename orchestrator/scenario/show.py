@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
+from orchestrator.master.slave import Interface, stem
 from orchestrator.scenario.parameters import settable_stems
 
 if TYPE_CHECKING:
@@ -24,15 +25,23 @@ def overview(blueprint: Blueprint) -> Iterator[Table | Text]:
 
 
 def _units(blueprint: Blueprint) -> Table:
-    table = Table("unit", "FMU", "rollback", "ports", title="Units, in the order of stepping", title_justify="left")
+    table = Table("unit", "FMU", "claims (tried at the start of a run)", "ports", title="Units, in the order of stepping", title_justify="left")
     for name, interface in blueprint.interfaces.items():
-        rollback = "claimed" if interface.claims("canGetAndSetFMUstate") else "no"
-        table.add_row(Text(name), Text(interface.model_name), rollback, Text(", ".join(interface.ports)))
+        table.add_row(Text(name), Text(interface.model_name), Text(", ".join(_claims(interface))), Text(", ".join(interface.ports)))
     return table
 
 
+def _claims(interface: Interface) -> list[str]:
+    """What the master can make use of."""
+    told = {"rollback": "canGetAndSetFMUstate", "serialised state": "canSerializeFMUstate", "interpolation": "canInterpolateInputs"}
+    claims = [what for what, capability in told.items() if interface.claims(capability)]
+    if interface.capabilities.get("canHandleVariableCommunicationStepSize", True):
+        claims.append("variable step")
+    return claims + (["slopes"] if any(stem(v.name).endswith("_slope") for v in interface.of("input")) else [])
+
+
 def _connections(blueprint: Blueprint) -> Table:
-    table = Table("from", "", "to", "values", title="Connections", title_justify="left")
+    table = Table("from", "", "to", "values", "scheme", title="Connections", title_justify="left")
     names = list(blueprint.interfaces)
     for connection in blueprint.scenario.connections:
         unit, _, first = connection.first.partition(".")
@@ -40,7 +49,7 @@ def _connections(blueprint: Blueprint) -> Table:
         ends = {(names.index(unit), first), (names.index(other), second)}
         made = [k for k in blueprint.links if _belongs(k.source_unit, k.source, ends) and _belongs(k.target_unit, k.target, ends)]
         arrow = "<->" if connection.both_ways else "->"
-        table.add_row(Text(connection.first), arrow, Text(connection.second), str(len(made)))
+        table.add_row(Text(connection.first), arrow, Text(connection.second), str(len(made)), connection.scheme or "by the master")
     return table
 
 
