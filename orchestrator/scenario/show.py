@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from orchestrator.master.slave import Interface, stem
+from orchestrator.master.slave import Interface
 from orchestrator.scenario.parameters import settable_stems
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def overview(blueprint: Blueprint) -> Iterator[Table | Text]:
 
 
 def _units(blueprint: Blueprint) -> Table:
-    table = Table("unit", "FMU", "claims (tried at the start of a run)", "ports", title="Units, in the order of stepping", title_justify="left")
+    table = Table("unit", "FMU", "claims (tried when run)", "ports", title="Units, in the order of stepping", title_justify="left")
     for name, interface in blueprint.interfaces.items():
         table.add_row(Text(name), Text(interface.model_name), Text(", ".join(_claims(interface))), Text(", ".join(interface.ports)))
     return table
@@ -37,7 +37,7 @@ def _claims(interface: Interface) -> list[str]:
     claims = [what for what, capability in told.items() if interface.claims(capability)]
     if interface.capabilities.get("canHandleVariableCommunicationStepSize", True):
         claims.append("variable step")
-    return claims + (["slopes"] if any(stem(v.name).endswith("_slope") for v in interface.of("input")) else [])
+    return claims + (["slopes"] if any(v.name.partition("[")[0].endswith("_slope") for v in interface.of("input")) else [])
 
 
 def _connections(blueprint: Blueprint) -> Table:
