@@ -117,7 +117,5 @@ def run(out: Path) -> list[Row]:
         print({key: rows[-1][key] for key in ("master", "setting", "body_mm", "stroke_cm", "wall_s", "message")}, flush=True)
     write_json(out, "full-vehicle", rows)
     write_table(out, "full-vehicle", rows, f"{len(base['units'])} units, {len(base['links'])} connections of scalars. {built()}")
-    drawn = sorted((row for row in rows if row["wall_s"]), key=lambda row: row["wall_s"])
-    plots.lines(drawn, out / "bench_full_vehicle.png", "wall_s", ["body_mm"], ("wall time of stepping, s", "largest error of the body, mm"),
-                by="master")
+    plots.scatter(rows, out / "bench_full_vehicle.png", "wall_s", "body_mm", ("wall time of stepping, s", "largest error of the body, mm"))
     return rows

@@ -49,6 +49,23 @@ def lines(rows: Sequence[Row], path: Path, x: str, ys: Sequence[str], labels: tu
     finish(figure, [axis], path)
 
 
+def scatter(rows: Sequence[Row], path: Path, x: str, y: str, labels: tuple[str, str]) -> None:
+    """One column over another, logarithmic, a colour a master, each point named by its setting."""
+    figure, axis = plt.subplots(figsize=(7.5, 4.5), layout="constrained")
+    for master in dict.fromkeys(row["master"] for row in rows):
+        drawn = [row for row in rows if row["master"] == master and row[y]]
+        if drawn:
+            style = master if master in MARKS else f"{master} fixed"
+            axis.plot([row[x] for row in drawn], [row[y] for row in drawn], linestyle="none", label=master, markersize=7,
+                      marker=MARKS.get(style, "."), color=COLOURS.get(style))
+        for row in drawn:
+            axis.annotate(row["setting"], (row[x], row[y]), textcoords="offset points", xytext=(6, 4), fontsize=7, color="0.35")
+    axis.set(xlabel=labels[0], ylabel=labels[1], xscale="log", yscale="log")
+    axis.margins(0.15)
+    axis.legend(frameon=False, fontsize=8)
+    finish(figure, [axis], path)
+
+
 def bars(rows: Sequence[Row], path: Path, name: str, value: str, label: str) -> None:
     """A horizontal bar a row."""
     figure, axis = plt.subplots(figsize=(7.0, 0.32 * len(rows) + 1.0), layout="constrained")
