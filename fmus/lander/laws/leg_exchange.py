@@ -13,6 +13,7 @@ from .leg import (
     Loads,
     axial_mass,
     base_coupling,
+    bottomed,
     lateral_mass,
     leg_motion,
     mount_wrench,
@@ -40,6 +41,7 @@ from .vectors import (
 )
 
 Array = NDArray[np.float64]
+GAVE_UP, DONE, BOTTOMED = range(3)
 MOUNT_WORK, PAD_WORK, KINETIC, POTENTIAL, DISSIPATED = range(5)  # the ledger's places
 
 
@@ -219,13 +221,13 @@ def advance_leg(
     struts: Array,
     ledger: Array,
     s: Array,
-) -> bool:
-    """Take the leg over `step` seconds and fill its outputs; False where Newton gave up (nothing is written then)."""
+) -> int:
+    """Take the leg over `step` seconds and fill its outputs: GAVE_UP where Newton did (nothing is written then), DONE, or BOTTOMED."""
     motion, before = read_base(body), read_state(s)
     wrench = read_load(load, contact, pad_state(base_at(motion, 0.0), before).position)
     now, course, last = step_leg(leg, gravity, motion, wrench, before, step, longest, vector(s, 18))
     if not last.ok:
-        return False
+        return GAVE_UP
     write_state(s, now, last.motion.acceleration)
     write_mount(leg, last, course.impulse, course.angular_impulse, step, mount)
     ledger[MOUNT_WORK] -= course.mount_work
@@ -236,4 +238,4 @@ def advance_leg(
     write_pad(leg, gravity, base, now, apply(rotation(base.attitude), last.force), last.ball, pad, model)
     write_struts(leg, now, last.motion.primary, last.motion.right, last.motion.left, struts)
     write_energy(leg, gravity, base, now, ledger)
-    return True
+    return BOTTOMED if bottomed(leg, struts[0], struts[1], struts[2]) else DONE

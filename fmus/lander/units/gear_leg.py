@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..laws.honeycomb import DATUM_WEIGHT, Core, Stop, brake_damping
-from ..laws.leg import Leg, bottomed, disc_inertia
-from ..laws.leg_exchange import advance_leg, start_leg
+from ..laws.leg import Leg, disc_inertia
+from ..laws.leg_exchange import BOTTOMED, GAVE_UP, advance_leg, start_leg
 from ..laws.leg_geometry import GearDimensions, GeometryError, LegGeometry, leg_geometry
 from ..shell import Unit, UnitError, input_, output, parameter, state
 
@@ -72,7 +72,7 @@ class GearLeg(Unit):
         parameter("joint_damping", 100.0, "N.s/m", "of every joint; N.m.s/rad where it turns", minimum=0.0),
         parameter("stop_stiffness", 4e7, "N/m", "of the end stops: that of the stiffest core, F/s", minimum=1.0),
         parameter("stop_damping", 6e4, "N.s/m", "of the end stops: critical for piston and pad", minimum=0.0),
-        parameter("longest_substep", 2.5e-4, "s", "of the integrator inside the leg", minimum=1e-7),
+        parameter("longest_substep", 5e-4, "s", "of the integrator inside the leg", minimum=1e-7),
         parameter("stroke_rate_start", 0.0, "m/s", "compression rate of the primary at the start, for drop tests"),
         input_("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
         input_("body.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "B to L", nominal=1.0),
@@ -206,12 +206,13 @@ class GearLeg(Unit):
 
     def advance(self, time: float, step: float) -> None:
         gravity, longest = self.value("gravity"), self.value("longest_substep")
-        if not advance_leg(self.leg, gravity, longest, step, *self.inputs, *self.outputs, self.states):
+        done = advance_leg(self.leg, gravity, longest, step, *self.inputs, *self.outputs, self.states)
+        if done == GAVE_UP:
             raise UnitError(
                 f"the struts' equations did not converge over {step:g} s with pad.force {self['pad.force'].round(1).tolist()} N; "
                 "a shorter interval may do"
             )
-        self["bottomed"] = float(bottomed(self.leg, *self.span("primary.stroke", "left.stroke").tolist()))
+        self["bottomed"] = float(done == BOTTOMED)
 
 
 def geometry_of(unit: Unit, azimuth: float) -> LegGeometry:

@@ -44,7 +44,7 @@ class RegolithContact(Unit):
         parameter("ground_origin", (0.0, 0.0, 0.0), "m", "a point of the plane, frame L"),
         parameter("footpad_radius", 0.47, "m", "of the circle of rim points", minimum=1e-3),
         parameter("footpad_height", 0.10, "m", "base to ball joint (Table 2)", minimum=0.0),
-        parameter("longest_substep", 2.5e-4, "s", "of the integrator inside", minimum=1e-7),
+        parameter("longest_substep", 5e-4, "s", "of the integrator inside", minimum=1e-7),
         input_("pad.position", (1.0, 0.0, 0.0), "m", "of the ball joint, frame L", nominal=1.0),
         input_("pad.quaternion", (1.0, 0.0, 0.0, 0.0), "1", "pad to L", nominal=1.0),
         input_("pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),

@@ -5,9 +5,10 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..laws.impedance import NUMBERS, corrections
-from ..laws.rigid_body import Body, BodyLoad, BodyState, body_energy, body_rate, inertia_matrix, step_body, wrench_work
-from ..laws.vectors import ZERO, Vector, add, apply, apply_transposed, from_yaw_pitch_roll, rotation, scale, sub, yaw_pitch_roll
+from ..laws.body_exchange import WRENCH, advance_body, write_body
+from ..laws.impedance import NUMBERS
+from ..laws.rigid_body import Body, BodyLoad, BodyState, body_rate, inertia_matrix
+from ..laws.vectors import ZERO, Vector, apply, from_yaw_pitch_roll, rotation
 from ..shell import Unit, input_, output, parameter
 from ..shell.records import Record
 
@@ -16,7 +17,6 @@ LEGS = tuple(f"leg{k}" for k in range(1, 9))
 PORTS = (*LEGS, "engine", *(f"effect{k}" for k in range(1, 5)))
 LONGEST = 1e-3  # s, Runge-Kutta step: its error per step is below 1e-12 of the motion at rates of 1 rad/s
 UNLOADED = BodyLoad(ZERO, ZERO, ZERO, ZERO)
-WRENCH = 18  # numbers of one wrench port: force, slope, added, torque, slope, added
 
 
 def model_inputs(port: str) -> tuple[Record, ...]:
@@ -93,81 +93,31 @@ class VehicleBody(Unit):
     def prepare(self) -> None:
         inertia = inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"]))
         self.body = Body(self.value("mass"), inertia, self.value("gravity"))
-        self.models = self.span(f"{LEGS[0]}.model_lever", f"{LEGS[-1]}.model_ground_damping").reshape(len(LEGS), NUMBERS)
+        self.inputs = (
+            self.span(f"{PORTS[0]}.force", f"{PORTS[-1]}.torque_added").reshape(len(PORTS), WRENCH),
+            self.span(f"{LEGS[0]}.model_lever", f"{LEGS[-1]}.model_ground_damping").reshape(len(LEGS), NUMBERS),
+            self.span("body.reference_velocity", "body.reference_valid"),
+        )
+        self.outputs = (
+            self.span("body.position", "body.angular_acceleration_slope"),
+            self.span("attitude.yaw", "energy.potential"),
+            self.span(f"{PORTS[0]}.work", f"{PORTS[-1]}.work"),
+        )
 
     def initialise(self) -> None:
         attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
         velocity = apply(rotation(attitude), triple(self["velocity_start"]))
         now = BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"]))
         rate = body_rate(self.body, now, UNLOADED, 0.0)  # the wrenches are not known yet: legs wait for the body's motion
-        self.show(now)
+        write_body(self.body, now, *self.outputs[:2])
         self["body.acceleration"] = self["body.acceleration_mean"] = rate.acceleration
         self["body.angular_acceleration"] = self["body.angular_acceleration_mean"] = rate.spin_up
 
-    def state(self) -> BodyState:
-        """The body's state, which is what it shows."""
-        q = self["body.quaternion"].tolist()
-        return BodyState(
-            triple(self["body.position"]), (q[0], q[1], q[2], q[3]), triple(self["body.velocity"]), triple(self["body.angular_velocity"])
-        )
-
-    def wrenches(self) -> Array:
-        """One row a port: force, slope, added, torque, slope, added."""
-        return self.span(f"{PORTS[0]}.force", f"{PORTS[-1]}.torque_added").reshape(len(PORTS), WRENCH)
-
-    def load(self) -> BodyLoad:
-        """Sum of all wrenches, sockets included."""
-        s = self.wrenches().sum(axis=0).tolist()
-        force, torque = (s[0] + s[6], s[1] + s[7], s[2] + s[8]), (s[9] + s[15], s[10] + s[16], s[11] + s[17])
-        return BodyLoad(force, torque, (s[3], s[4], s[5]), (s[12], s[13], s[14]))
-
     def advance(self, time: float, step: float) -> None:
-        before, load = self.state(), self.load()
-        changes = self.corrections(before, load, step)
-        if changes is not None:
-            force, torque = triple(changes[:, :3].sum(axis=0)), triple(changes[:, 3:].sum(axis=0))
-            load = BodyLoad(add(load.force, force), add(load.torque, torque), load.force_slope, load.torque_slope)
-        first = body_rate(self.body, before, load, 0.0)
-        now = step_body(self.body, before, load, step, LONGEST)
-        last = body_rate(self.body, now, load, step)
-        self.show(now)
-        self["body.acceleration"], self["body.angular_acceleration"] = last.acceleration, last.spin_up
-        self["body.acceleration_mean"] = scale(1.0 / step, sub(now.velocity, before.velocity))
-        self["body.angular_acceleration_mean"] = scale(1.0 / step, sub(now.rate, before.rate))
-        self["body.acceleration_slope"] = scale(1.0 / step, sub(last.acceleration, first.acceleration))
-        self["body.angular_acceleration_slope"] = scale(1.0 / step, sub(last.spin_up, first.spin_up))
-        for k, (port, row) in enumerate(zip(PORTS, self.wrenches(), strict=True)):
-            if row.any():
-                r = row.tolist()
-                force, torque = add(vector(r, 0), vector(r, 6)), add(vector(r, 9), vector(r, 15))
-                if changes is not None and k < len(LEGS):
-                    force, torque = add(force, triple(changes[k, :3])), add(torque, triple(changes[k, 3:]))
-                self[f"{port}.work"] += wrench_work(before, now, BodyLoad(force, torque, vector(r, 3), vector(r, 12)), step)
-
-    def corrections(self, before: BodyState, load: BodyLoad, step: float) -> Array | None:
-        """What the legs' mean wrenches change by, because the body moves otherwise than in the pass before; None without such a pass."""
-        if not self.value("body.reference_valid"):
-            return None
-        trial = step_body(self.body, before, load, step, LONGEST)
-        moved = apply_transposed(rotation(trial.attitude), sub(trial.velocity, triple(self["body.reference_velocity"])))
-        turned = sub(trial.rate, triple(self["body.reference_angular_velocity"]))
-        return corrections(self.models, self.body.mass, self.body.inertia, moved, turned, step)
-
-    def show(self, now: BodyState) -> None:
-        """Fill what follows from the state."""
-        self["body.position"], self["body.quaternion"] = now.position, now.attitude
-        self["body.velocity"], self["body.angular_velocity"] = now.velocity, now.rate
-        self.span("attitude.yaw", "attitude.roll")[:] = yaw_pitch_roll(now.attitude)
-        self.span("rates.yaw", "rates.roll")[:] = now.rate
-        self.span("energy.kinetic", "energy.potential")[:] = body_energy(self.body, now)
+        advance_body(self.body, LONGEST, step, *self.inputs, *self.outputs)
 
 
 def triple(view: Array) -> Vector:
     """A view of three numbers as a tuple."""
     x, y, z = view.tolist()
     return (x, y, z)
-
-
-def vector(row: list[float], i: int) -> Vector:
-    """Three numbers of a row as a tuple."""
-    return (row[i], row[i + 1], row[i + 2])
