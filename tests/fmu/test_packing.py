@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import venv
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -45,6 +46,16 @@ def test_fmpy_finds_nothing_to_complain_of(fmus: dict[str, Path], toy: Path) -> 
 def test_every_unit_runs_in_a_python_that_has_never_heard_of_the_project(fmus: dict[str, Path], tmp_path: Path) -> None:
     for name, fmu in fmus.items():
         done = subprocess.run([sys.executable, "-I", "-c", STRANGER, str(fmu)], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, (name, done.stdout, done.stderr)
+
+
+def test_every_unit_runs_where_only_fmpy_is_installed(fmus: dict[str, Path], tmp_path: Path) -> None:
+    """No pythonfmu, no numba, no project: what a colleague's machine has. Plain Python then, from what the FMU carries."""
+    venv.create(tmp_path / "bare", with_pip=True)
+    python = tmp_path / "bare" / ("Scripts" if os.name == "nt" else "bin") / "python"
+    subprocess.run([python, "-m", "pip", "install", "-q", "fmpy", "numpy"], check=True, capture_output=True)
+    for name, fmu in fmus.items():
+        done = subprocess.run([python, "-I", "-c", STRANGER, str(fmu)], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0, (name, done.stdout, done.stderr)
 
 

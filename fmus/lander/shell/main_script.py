@@ -72,6 +72,6 @@ def unit_class(namespace: dict[str, Any], file: str, unit: str, digest: str) -> 
     if name not in sys.modules:
         loaded(cached_copy(resources / "lander", digest), name)
     vars(sys.modules[name]).setdefault("held_namespaces", []).append(namespace)
+    found: type = getattr(importlib.import_module(f"{name}.units.{file}"), unit)  # finds pythonfmu in the resources where the host has none
     sys.path[:] = [entry for entry in sys.path if entry != str(resources)]
-    found: type = getattr(importlib.import_module(f"{name}.units.{file}"), unit)
     return found
