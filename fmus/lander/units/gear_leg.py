@@ -1,6 +1,7 @@
 """GearLeg: one cantilever leg with its crushable struts and its footpad, at any azimuth."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,6 +172,14 @@ class GearLeg(Unit):
         state("leg.crush", (0.0,) * 5),
         state("leg.guess", (0.0, 0.0, 0.0), "last acceleration, where Newton starts"),
     )
+
+    experiment = (0.0, 0.2, 5e-3)
+
+    @classmethod
+    def stimulus(cls, time: float) -> dict[str, Any]:
+        """A push on the pad that grows until the left secondary gives way; the body is held."""
+        share = min(1.0, time / 0.1)
+        return {"pad.force": (6000.0 * share, 900.0 * share, -600.0 * share)}
 
     def check(self) -> Iterable[str]:
         for strut in ("primary", "tension"):

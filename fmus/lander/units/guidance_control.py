@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..laws.tailoff import fitted_slope, mean_thrust, thrust, thrust_points
-from ..shell import Unit, input_, output, parameter, state
+from ..shell import Unit, input_, nanoseconds, output, parameter, state
 
 CONTACTS = range(1, 9)
 POINTS = 8
@@ -21,7 +21,7 @@ class GuidanceControl(Unit):
     A contact is seen at the start of the interval in which its signal is set: τ = 0 there. The force acts along +X of
     frame B through the line of thrust at thrust_offset, the torque is about the origin of B. engine.force_mean is exact
     (the law is piecewise linear in time), force_slope is the slope of the nearest straight line over the interval, force the
-    value at its end. Attitude, rates, position and velocity are taken for the sake of the port's contract, and not used.
+    value at its end. next_event_time is the next corner of the law after the interval. Attitude, rates, position and velocity are taken for the sake of the port's contract, and not used.
     """
 
     description = "Descent engine tail-off: thrust over time since first contact."
@@ -60,6 +60,7 @@ class GuidanceControl(Unit):
         ),
         output("engine.thrust", 0.0, "N", "thrust along +X of B", nominal=1e4, initially=("thrust_before_contact",)),
         output("engine.on", False, "", "whether there is thrust", boolean=True, initially=("thrust_before_contact",)),
+        output("next_event_time", -1.0, "s", "next corner of the law of thrust, -1: none", nominal=1.0, initially=()),
         state("contact_time", -1.0, "time of first contact"),
         state("touched", 0.0),
     )
@@ -93,6 +94,12 @@ class GuidanceControl(Unit):
             return
         tau = max(0.0, time - self.value("contact_time"))
         self.show(thrust(tau + step, self.corners), mean_thrust(tau, step, self.corners), fitted_slope(tau, step, self.corners))
+        self["next_event_time"] = self.next_corner(nanoseconds(time + step))
+
+    def next_corner(self, now: int) -> float:
+        """The first corner after a time in ns, in s; -1 where none is left."""
+        instants = (self.value("contact_time") + self.corners[:, 0]).tolist()
+        return next((instant for instant in instants if nanoseconds(instant) > now), -1.0)
 
     def show(self, end: float, mean: float, slope: float) -> None:
         """Fill the outputs: force along X, torque r × F of the offset line of thrust."""

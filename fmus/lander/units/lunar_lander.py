@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import replace
 from math import pi
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +104,14 @@ class LunarLander(Unit):
         state("touch", (-1.0,) * LEGS),
         state("next_step", 1e-5),
     )
+
+    experiment = (0.0, 0.1, 5e-3)
+    reference_parameters = (("position_start", (3.63, 0.0, 0.0)), ("velocity_start", (-0.5, -0.2, 0.0)), ("roll_start", 0.005))
+
+    @classmethod
+    def stimulus(cls, time: float) -> dict[str, Any]:
+        """Straight onto level ground, a little to the left, under half the weight in thrust."""
+        return {"engine.force": (5000.0, 0.0, 0.0)}
 
     def check(self) -> Iterable[str]:
         try:

@@ -15,7 +15,7 @@ class RateSensor(Unit):
     sampled at t0, t0 + Δ, t0 + 2Δ, ... and held; Δ = 0: not sampled. The instants are counted in nanoseconds.
     telemetry = q round(z / q), half upwards; q = 0: not quantised
 
-    An input without slope is held over the interval. Neutral parameters (the defaults) give the input at the interval's end.
+    An input without slope is held over the interval. next_event_time is when the next sample is due. Neutral parameters (the defaults) give the input at the interval's end.
     """
 
     description = "Telemetry of the body's rates: lag, bias, scale, sampling and quantisation."
@@ -37,6 +37,7 @@ class RateSensor(Unit):
             )
             for axis in AXES
         ),
+        output("next_event_time", -1.0, "s", "next sample, -1: continuous", nominal=1.0, initially=("sample_interval",)),
         state("lagged", (0.0, 0.0, 0.0)),
         state("held", (0.0, 0.0, 0.0)),
         state("samples", 0.0, "samples taken since the start; counted, not summed"),
@@ -60,6 +61,7 @@ class RateSensor(Unit):
         self["lagged"] = [self.value(f"rates.{axis}") for axis in AXES]
         self["held"] = self["lagged"]
         self["samples"] = 1.0
+        self["next_event_time"] = self.next_sample(0)
         self.show()
 
     def advance(self, time: float, step: float) -> None:
@@ -76,7 +78,13 @@ class RateSensor(Unit):
         if not interval:
             held[:] = lagged
         self["samples"] = max(self.value("samples"), count + 1.0)
+        self["next_event_time"] = self.next_sample(count)
         self.show()
+
+    def next_sample(self, count: int) -> float:
+        """When the sample after the last `count` is due, in s."""
+        interval = nanoseconds(self.value("sample_interval"))
+        return self.start_time + (count + 1) * interval * 1e-9 if interval else -1.0
 
     def after(self, y: float, u: float, k: float, t: float) -> float:
         """The lag's answer a time t after y, when the input is u + k t: y = u + k (t - τ) + (y0 - u + k τ) exp(-t/τ)."""

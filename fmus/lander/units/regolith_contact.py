@@ -1,5 +1,7 @@
 """RegolithContact: the soil under one footpad."""
 
+from typing import Any
+
 from ..laws.footpad import COLUMNS, POINTS, Footpad
 from ..laws.soil import Soil
 from ..laws.soil_exchange import advance_soil, start_soil
@@ -76,6 +78,13 @@ class RegolithContact(Unit):
         output("contact_time", -1.0, "s", "of first contact, -1 before", nominal=1.0),
         state("points", (0.0,) * (POINTS * COLUMNS), "per point: datum, slide, last place, last depth"),
     )
+
+    experiment = (0.0, 0.1, 2e-3)
+
+    @classmethod
+    def stimulus(cls, time: float) -> dict[str, Any]:
+        """A pad pushed into the soil at a given speed, sliding."""
+        return {"pad.position": (0.105 - 0.4 * time, 0.2 * time, 0.0), "pad.velocity": (-0.4, 0.2, 0.0)}
 
     def prepare(self) -> None:
         self.soil, self.surface = soil_of(self)

@@ -1,6 +1,7 @@
 """VehicleBody: the lander's rigid body, to which legs, engine and further effects attach by wrenches."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,6 +84,19 @@ class VehicleBody(Unit):
         output("energy.potential", 0.0, "J", "m g x, zero at the origin of L", nominal=1e3),
         *(output(f"{port}.work", 0.0, "J", "done on the body through this port since the start", nominal=1e3) for port in PORTS),
     )
+
+    experiment = (0.0, 0.5, 5e-3)
+    reference_parameters = (("rates_start", (-0.0108, 0.1, -0.05)),)
+
+    @classmethod
+    def stimulus(cls, time: float) -> dict[str, Any]:
+        """Thrust that decays, and a push of leg 1 off the middle."""
+        return {
+            "engine.force": (5000.0 * (1.0 - time), 0.0, 0.0),
+            "engine.force_slope": (-5000.0, 0.0, 0.0),
+            "leg1.force": (2000.0, 300.0, -100.0),
+            "leg1.torque": (50.0, 4000.0, -200.0),
+        }
 
     def check(self) -> Iterable[str]:
         x, y, z = self["inertia"]
