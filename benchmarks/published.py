@@ -24,9 +24,15 @@ WIDTHS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1e-4)  # m
 Case = tuple[str, tuple[str, ...]]
 
 
+def decaying(thrust: float) -> tuple[str, ...]:
+    """Thrust (N) until first contact, then to zero in the scenario's decay time."""
+    return ("--set", f"guidance.thrust_start={thrust}", "--set", f"guidance.thrust_before_contact={thrust}")
+
+
 def held(thrust: float) -> tuple[str, ...]:
     """Thrust (N) held for 1.5 s after first contact, then cut: the crew's shutdown taken literally."""
-    pairs = {"table_points": 2, "table_time[1]": 0.0, "table_time[2]": 1.5, "table_thrust[1]": thrust, "table_thrust[2]": thrust}
+    table = {"table_points": 2, "table_time[1]": 0.0, "table_time[2]": 1.5, "table_thrust[1]": thrust, "table_thrust[2]": thrust}
+    pairs = table | {"thrust_before_contact": thrust}
     settings = (word for name, value in pairs.items() for word in ("--set", f"guidance.{name}={value}"))
     return (*settings, "--stop-time", "6")
 
@@ -39,8 +45,8 @@ def cases() -> dict[str, Case]:
         scenario = f"apollo11_{c}"
         runs |= {scenario: (scenario, ()), f"{scenario}_twin": (f"{scenario}_twin", ())}
         runs[f"{c}_law2"] = (scenario, ("--set", "soil*.law=2"))
-        runs[f"{c}_thrust_none"] = (scenario, ("--set", "guidance.thrust_start=0"))
-        runs[f"{c}_thrust_weight"] = (scenario, ("--set", f"guidance.thrust_start={WEIGHT[c]}"))
+        runs[f"{c}_thrust_none"] = (scenario, decaying(0.0))
+        runs[f"{c}_thrust_weight"] = (scenario, decaying(WEIGHT[c]))
         runs[f"{c}_thrust_held"] = (scenario, held(ASSUMED[c]))
         runs[f"{c}_thrust_weight_held"] = (scenario, held(WEIGHT[c]))
     for s in WIDTHS:
