@@ -14,7 +14,7 @@ from orchestrator.scenario.expand import Scenario, expand
 from orchestrator.scenario.locate import find_fmu, fmu_folder
 from orchestrator.scenario.parameters import start_values
 from orchestrator.scenario.read import Tree, check_table, merge, read_table
-from orchestrator.scenario.record import matching_outputs
+from orchestrator.scenario.record import DISCRETE, matching_outputs
 from orchestrator.scenario.wiring import Wiring
 
 
@@ -31,6 +31,8 @@ class Blueprint:
     recorded: list[list[str]]
     zero: list[list[str]] = field(default_factory=list)
     """Outputs of the start condition, per unit."""
+    located: list[list[str]] = field(default_factory=list)
+    """Outputs whose changes are located, per unit."""
 
 
 def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None) -> Scenario:
@@ -54,4 +56,6 @@ def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
         wiring.connect(connection)
     recorded = matching_outputs(scenario.record, interfaces, f"{scenario.where}: record.variables") if scenario.record else []
     zero = matching_outputs(scenario.zero, interfaces, f"{scenario.where}: start.zero") if scenario.zero else []
-    return Blueprint(scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero)
+    locate = scenario.table.master.locate
+    located = matching_outputs(locate, interfaces, f"{scenario.where}: master.locate", DISCRETE) if locate else []
+    return Blueprint(scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located)

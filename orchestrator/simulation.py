@@ -34,8 +34,8 @@ class Simulation:
         if slaves is None:
             slaves = [Fmi2Unit(name, _path(i), i) for name, i in blueprint.interfaces.items()]
         once = frozenset(unit.name for unit in blueprint.scenario.units if unit.once)
-        self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero)
-        settings = MasterSettings(**table.master.model_dump(exclude={"order"}), record_interval=table.record.interval)
+        self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero, blueprint.located)
+        settings = MasterSettings(**table.master.model_dump(exclude={"order", "locate"}), record_interval=table.record.interval)
         self.master = Master(self.system, settings)
         self.on_hang: Callable[[RunResult], None] | None = None
         """What to do with the run so far when a unit does not come back; called from another thread, must leave the process."""

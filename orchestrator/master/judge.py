@@ -49,6 +49,14 @@ def judge(interval: int, estimate: float, limits: StepLimits, can_undo: bool = T
     return Verdict(False, False, min(proposed, interval - 1))
 
 
+def resume(verdict: Verdict, interval: int, wanted: int, estimate: float, limits: StepLimits) -> int:
+    """The next interval after an accepted step that an event cut short: the one wanted before it, as far as the estimate lets it."""
+    if verdict.unresolved or isnan(estimate):
+        return verdict.next_interval
+    room = wanted if estimate <= 0.0 else min(wanted, int(interval * SAFETY * sqrt(limits.tolerance / estimate)))
+    return max(verdict.next_interval, room)
+
+
 def halve(interval: int, limits: StepLimits) -> int | None:
     """The interval to retry with after a unit refused one; None when it was the smallest."""
     return max(limits.minimum, interval // 2) if interval > limits.minimum else None

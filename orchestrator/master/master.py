@@ -9,8 +9,9 @@ from time import perf_counter
 from orchestrator.master.checks import check_finite
 from orchestrator.master.coupling import check_asked, connection_records, couple
 from orchestrator.master.estimates import Estimates
+from orchestrator.master.events import Events
 from orchestrator.master.guard import Guard
-from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, judge, step_limits
+from orchestrator.master.judge import SETTLING, StepLimits, Verdict, fit_to_stop, judge, resume, step_limits
 from orchestrator.master.plan import Phase, make_plan
 from orchestrator.master.recorder import Ledger, Recorder
 from orchestrator.master.refusal import Refusal, next_attempt, stuck_error
@@ -32,7 +33,7 @@ class Master:
 
     MEMORY = (
         *("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger"),
-        *("switched", "block_memory"),
+        *("switched", "block_memory", "events"),
     )
     """What passes from one accepted step to the next outside the units, kept by checkpoints. An object named here has its own."""
 
@@ -43,6 +44,7 @@ class Master:
         self.plan = make_plan(system)
         self.recorder = Recorder(system, self.plan.board, in_ns(self.settings.record_interval))
         self.ledger = Ledger(system, self.plan.board)
+        self.events = Events(self.plan, self.settings.event_tolerance)
         self.log: list[Attempt] = []
         self.warnings: list[str] = []
         self.unresolved = 0
@@ -80,7 +82,8 @@ class Master:
         self._savers = [slave for slave, can in zip(system.slaves, self.rollback, strict=True) if can]
         self._couple()
         self.warnings += self._estimates.warnings
-        self._fix_interval()
+        self.events.prepare(self.repeated, self.rollback, not self._fix_interval())
+        self.warnings += self.events.warnings
         for slave in system.slaves:
             slave.steps, slave.seconds = 0, 0.0
 
@@ -106,13 +109,14 @@ class Master:
         self._guard = Guard(self.plan, [pair for pair in self.coupling.explicit if not pair & once])
         self._estimates = Estimates(self.plan, self.coupling, self._sweep.blocks, self._passes, self.settings)
 
-    def _fix_interval(self) -> None:
-        """A unit that takes one step size only sets it for all: nothing can then be rejected."""
+    def _fix_interval(self) -> bool:
+        """A unit that takes one step size only sets it for all: nothing can then be rejected. Whether there is one."""
         for slave in self.system.slaves:
             if not slave.interface.capabilities.get("canHandleVariableCommunicationStepSize", True):
                 self.limits = self.limits._replace(minimum=self.limits.maximum)
                 self.warnings.append(f"{slave.name}: takes one step size only, so every interval is {self.settings.max_interval:g} s")
-                return
+                return True
+        return False
 
     def run(self, on_step: StepListener | None = None) -> None:
         """To the stop time. Raises RunError when a unit fails; what was recorded stays."""
@@ -173,31 +177,43 @@ class Master:
             slave.save()
         self._sweep.time = self._time
         self._sweep.note_start()
-        interval, followed = wanted, False
+        followed = False
         while True:
-            interval = fit_to_stop(interval, self._stop - self._time, self.limits)
-            refused = self._attempt(interval)
+            interval, cut = self.events.cut(fit_to_stop(wanted, self._stop - self._time, self.limits), self._time, self.limits)
+            refused, event = self._attempt(interval), ""
             if refused is None:
                 verdict, estimate, limit = self._judged(interval)
-                refused = self._finish(interval) if verdict.accepted else None
+                if verdict.accepted:
+                    refused, event = self._finish_or_find(interval)
             if refused is not None:
                 self._note(interval, nan, False, refused.kind)
                 self._settling = SETTLING
-                interval = next_attempt(refused, self._time, interval, self.limits, not followed)
+                wanted = next_attempt(refused, self._time, interval, self.limits, not followed)
                 followed = followed or bool(refused.reached)
+                self._undo()
+                continue
+            if event:
+                self._note(interval, estimate, False, f"event {event}")
+                self.events.seek(event, self._time + interval)
                 self._undo()
                 continue
             if verdict.accepted and self._estimates.late:
                 verdict, estimate, limit = self._judged(interval, late=True)
-            self._note(interval, estimate, verdict.accepted, self._what_limits(interval, limit, verdict))
+            self._note(interval, estimate, verdict.accepted, cut or self._what_limits(interval, limit, verdict))
             if verdict.accepted:
                 self.unresolved += verdict.unresolved
                 self._settling = max(0, self._settling - 1)
                 self._accept(interval)
-                return verdict.next_interval
+                return resume(verdict, interval, wanted, estimate, self.limits) if cut else verdict.next_interval
             self._settling = SETTLING
             self._undo()
-            interval = verdict.next_interval
+            wanted = verdict.next_interval
+
+    def _finish_or_find(self, interval: int) -> tuple[Refusal | None, str]:
+        """Units stepped once, unless an event is seen before; the refusal of one, or the event seen."""
+        event = self.events.seen(interval, after=False)
+        refused = None if event else self._finish(interval)
+        return refused, event if event or refused else self.events.seen(interval, after=True)
 
     def _judged(self, interval: int, late: bool = False) -> tuple[Verdict, float, str]:
         """The verdict with the estimate and the port it comes from; `late`, after units were stepped that may not be undone."""
@@ -246,6 +262,7 @@ class Master:
     def _accept(self, interval: int) -> None:
         self._guard.check(self._time, interval)
         self._time += interval
+        self.events.pass_by(self._time)
         self.ledger.enter()
         self._record(last=self._time >= self._stop)
         self.plan.board.start[:] = self.plan.board.now

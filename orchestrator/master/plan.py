@@ -24,6 +24,8 @@ from orchestrator.master.system import Link, System
 Places = NDArray[np.intp]
 MISMATCH = ("mismatch_velocity", "mismatch_angular_velocity")
 REFERENCE, VALID = "reference_", "reference_valid"
+SCHEDULED = "next_event_time"
+"""Last part of the name of a Real output: a time a communication point must fall on, s."""
 
 
 class Phase(Enum):
@@ -99,6 +101,12 @@ class Plan:
     vectors: list[Vector]
     coupled: list[int]
     """Per unit, how many of its outputs are fetched after every step; they stand first."""
+
+    @property
+    def scheduled(self) -> list[tuple[int, str]]:
+        """(unit, output) of the times units announce."""
+        slaves = enumerate(self.system.slaves)
+        return [(unit, name) for unit, slave in slaves for name in _scheduled(slave.interface)]
 
     def jobs(self, phase: Phase, units: list[int], repeated: list[bool], held: Collection[Link] = ()) -> list[Job]:
         """The units of a phase in order, each with the sources of its inputs; links that are `held` carry values at the start."""
@@ -233,10 +241,15 @@ def _outputs(system: System, unit: int, reduced: list[ReducedPort]) -> tuple[lis
                 coupled.update(dict.fromkeys(v.name for v in interface.elements(f"{name}.work", "output")))
     coupled.update(dict.fromkeys(own for own in _references(interface).values() if own))
     coupled.update(dict.fromkeys(v.name for s in motion_stems(system, unit) for v in interface.elements(s, "output")))
-    others = [name for lists in (system.recorded, system.watched) if lists for name in lists[unit]]
+    coupled.update(dict.fromkeys(_scheduled(interface)))
+    others = [name for lists in (system.recorded, system.watched, system.located) if lists for name in lists[unit]]
     real = [name for name in coupled if interface.variables[name].kind is Kind.REAL]
     rest = dict.fromkeys(name for name in [*coupled, *others] if name not in set(real))
     return real + _real_first(rest, interface), len(real)
+
+
+def _scheduled(interface: Interface) -> list[str]:
+    return [v.name for v in interface.of("output") if v.kind is Kind.REAL and v.name.rpartition(".")[2] == SCHEDULED]
 
 
 def _real_first(names: dict[str, None], interface: Interface) -> list[str]:

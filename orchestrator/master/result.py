@@ -26,7 +26,8 @@ class Attempt(NamedTuple):
     """The error estimate, m; NaN where the system offers none."""
     accepted: bool
     limit: str
-    """What kept the next interval from being longer: a port ("soil+Z.pad"), "max interval", "stop time", or "discard by UNIT"."""
+    """What kept the next interval from being longer: a port ("soil+Z.pad"), "max interval", "stop time", or "discard by UNIT"; where an
+    event ended this one, "scheduled UNIT" or "event UNIT.OUTPUT" (not accepted: it happened in it, and a shorter one follows)."""
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,8 @@ class MasterSettings:
     """Of a quasi-Newton in one interval."""
     interface_share: float = 0.02
     """A quasi-Newton has converged when its next correction would move the units by less than this share of the tolerance."""
+    event_tolerance: float = 1e-4
+    """s: the longest step in which an output that is located may change."""
     step_timeout: float = 60.0
     """s of wall time in one call of a unit, after which it is taken to hang; 0: wait for ever."""
     unresolved_limit: float = 0.01

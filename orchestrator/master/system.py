@@ -59,6 +59,8 @@ class System:
     """Per unit, the outputs to record."""
     watched: Sequence[Sequence[str]] = field(default_factory=list)
     """Per unit, further outputs to fetch, e.g. those a start condition needs."""
+    located: Sequence[Sequence[str]] = field(default_factory=list)
+    """Per unit, the Boolean and Integer outputs just after whose changes a step must end."""
 
     def label(self, unit: int, port: str) -> str:
         return f"{self.slaves[unit].name}.{port}" if port else self.slaves[unit].name

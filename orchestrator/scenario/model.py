@@ -68,6 +68,9 @@ class MasterTable(Table):
     motion_lever: Positive = _DEFAULT.motion_lever
     max_iterations: Annotated[int, Field(ge=2, le=200)] = _DEFAULT.max_iterations
     interface_share: Positive = _DEFAULT.interface_share
+    locate: list[str] = []
+    """Globs over Boolean and Integer outputs, "soil*.contact": a step ends just after each of their changes."""
+    event_tolerance: Annotated[float, Field(ge=1e-9, allow_inf_nan=False)] = _DEFAULT.event_tolerance
     step_timeout: Annotated[float, Field(ge=0.0)] = _DEFAULT.step_timeout
     unresolved_limit: Annotated[float, Field(ge=0.0, le=1.0)] = _DEFAULT.unresolved_limit
     ledger_limit: Annotated[float, Field(ge=0.0)] = _DEFAULT.ledger_limit

@@ -10,7 +10,7 @@ from orchestrator.master.slave import Interface, Kind, Variable
 from orchestrator.scenario.expand import expand
 from orchestrator.scenario.parameters import start_values
 from orchestrator.scenario.read import check_table, merge, read_table
-from orchestrator.scenario.record import matching_outputs
+from orchestrator.scenario.record import DISCRETE, matching_outputs
 
 FOUR = """
 title = "four legs"
@@ -209,3 +209,12 @@ def test_globs_choose_outputs_with_and_without_index() -> None:
         matching_outputs(["leg.z"], units, "x")
     with pytest.raises(ScenarioError, match=r'did you mean "leg\+Z\.pad\.position"'):
         matching_outputs(["leg+Z.pad.postion"], units, "x")
+
+
+def test_only_boolean_and_integer_outputs_can_be_located() -> None:
+    kinds = {"contact": Kind.BOOLEAN, "contact_time": Kind.REAL, "stage": Kind.INTEGER}
+    variables = [Variable(name, kind, "output") for name, kind in kinds.items()]
+    interfaces = {"soil+Z": Interface("Soil", {v.name: v for v in variables})}
+    assert matching_outputs(["soil*.*"], interfaces, "here", DISCRETE) == [["contact", "stage"]]
+    with pytest.raises(ScenarioError, match=r'here: "soil.*contact_time" matches no output'):
+        matching_outputs(["soil*.contact_time"], interfaces, "here", DISCRETE)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from lander.laws.tailoff import fitted_slope, impulse, mean_thrust, thrust, thrust_points
 from lander.units.guidance_control import GuidanceControl
+from lander.units.rate_sensor import RateSensor
 
 NONE = np.zeros(8)
 DECAY = thrust_points(1000.0, 0.5, NONE, NONE, 0)
@@ -105,3 +106,41 @@ def test_a_table_that_does_not_rise_is_named() -> None:
     one["table_points"], one["table_time"][:3] = 3.0, (0.0, 0.2, 0.2)
     one.exit_initialization_mode()
     assert one.message == "table_time[3] is 0.2 s, expects more than table_time[2], 0.2 s"
+
+
+def test_the_next_corner_is_announced_from_first_contact_on() -> None:
+    one = guidance(thrust_start=1000.0, decay_time=0.5)
+    assert one.value("next_event_time") == -1.0
+    assert one.do_step(0.0, 0.1)
+    assert one.value("next_event_time") == -1.0
+    one["contact1"] = 1.0
+    assert one.do_step(0.1, 0.2)
+    assert one.value("next_event_time") == pytest.approx(0.6, abs=1e-12)
+    assert one.do_step(0.3, 0.3)
+    assert one.value("next_event_time") == -1.0
+
+
+def test_every_corner_of_a_table_is_announced() -> None:
+    one = GuidanceControl(instance_name="guidance")
+    one["table_points"], one["table_time"][:3], one["table_thrust"][:3] = 3.0, (0.1, 0.2, 0.6), (5e3, 8e3, 2e3)
+    one.exit_initialization_mode()
+    one["contact4"], seen, now = 1.0, [], 0.0
+    assert one.do_step(now, 0.05)
+    now = 0.05
+    while one.value("next_event_time") >= 0.0:
+        seen.append(one.value("next_event_time"))
+        assert one.do_step(now, seen[-1] - now)
+        now = seen[-1]
+    assert seen == pytest.approx([0.1, 0.2, 0.6], abs=1e-12)
+
+
+def test_the_next_sample_is_announced() -> None:
+    one = RateSensor(instance_name="sensor")
+    one.setup_experiment(1.0, None, None)
+    one["sample_interval"] = 0.025
+    one.exit_initialization_mode()
+    assert one.value("next_event_time") == pytest.approx(1.025, abs=1e-12)
+    assert one.do_step(1.0, 0.025)
+    assert one.value("next_event_time") == pytest.approx(1.05, abs=1e-12)
+    assert one.do_step(1.025, 0.06)
+    assert one.value("next_event_time") == pytest.approx(1.1, abs=1e-12)

@@ -21,7 +21,8 @@ class GuidanceControl(Unit):
     A contact is seen at the start of the interval in which its signal is set: τ = 0 there. The force acts along +X of
     frame B through the line of thrust at thrust_offset, the torque is about the origin of B. engine.force_mean is exact
     (the law is piecewise linear in time), force_slope is the slope of the nearest straight line over the interval, force the
-    value at its end. next_event_time is the next corner of the law after the interval. Attitude, rates, position and velocity are taken for the sake of the port's contract, and not used.
+    value at its end. next_event_time is the next corner of the law after the interval. Attitude, rates, position and velocity are
+    taken for the sake of the port's contract, and not used.
     """
 
     description = "Descent engine tail-off: thrust over time since first contact."

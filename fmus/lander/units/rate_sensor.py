@@ -15,7 +15,8 @@ class RateSensor(Unit):
     sampled at t0, t0 + Δ, t0 + 2Δ, ... and held; Δ = 0: not sampled. The instants are counted in nanoseconds.
     telemetry = q round(z / q), half upwards; q = 0: not quantised
 
-    An input without slope is held over the interval. next_event_time is when the next sample is due. Neutral parameters (the defaults) give the input at the interval's end.
+    An input without slope is held over the interval. next_event_time is when the next sample is due. Neutral parameters (the defaults)
+    give the input at the interval's end.
     """
 
     description = "Telemetry of the body's rates: lag, bias, scale, sampling and quantisation."
