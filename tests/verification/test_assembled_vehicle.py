@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 from apollo_samples import ENGINE_OFF, GRAVITY, INERTIA, MASS, ZUPP, started, vehicle
 from lander.laws.blocks import quaternion, vector
-from lander.laws.leg import Base, accelerated, bias, mount_wrench, rigid_wrench, shape
+from lander.laws.leg import shape
+from lander.laws.leg_inertia import Base, accelerated, bias
+from lander.laws.leg_reaction import mount_wrench, rigid_wrench
 from lander.laws.twin import QX, VX, WX, Engine, Flight, P, Q, V, Vehicle, W, X
 from lander.laws.twin_stepping import Settings, integrate, start_accelerations
 from lander.laws.vectors import ZERO, rotation

@@ -11,32 +11,11 @@ import pytest
 from apollo_samples import AZIMUTHS, leg_at
 from lander.laws.base_motion import BaseState
 from lander.laws.interface import leg_energy
-from lander.laws.leg import (
-    Base,
-    Crush,
-    Leg,
-    Motion,
-    Nodes,
-    Shape,
-    accelerated,
-    axial_mass,
-    ball_torque,
-    bias,
-    bottomed,
-    crushed,
-    first_moment,
-    joint_damping,
-    lateral_mass,
-    leg_mass,
-    leg_motion,
-    mobility,
-    mount_wrench,
-    rigid_wrench,
-    shape,
-    strokes,
-    strut_loads,
-    tangents,
-)
+from lander.laws.leg import Crush, Leg, Shape, bottomed, crushed, leg_mass, shape, strokes, strut_loads
+from lander.laws.leg_dynamics import Motion, leg_motion, mobility, tangents
+from lander.laws.leg_inertia import Base, Nodes, accelerated, axial_mass, bias, first_moment, lateral_mass
+from lander.laws.leg_joints import ball_torque, joint_damping
+from lander.laws.leg_reaction import mount_wrench, rigid_wrench
 from lander.laws.leg_stepping import LegState
 from lander.laws.vectors import ZERO, Vector, from_rotation_vector, rotation
 

@@ -9,7 +9,9 @@ from apollo_samples import GRAVITY, leg_at, pad_load
 from lander.laws.base_motion import BaseMotion, as_base, base_at
 from lander.laws.honeycomb import Stop
 from lander.laws.interface import leg_energy
-from lander.laws.leg import Crush, Leg, ball_torque, leg_motion, shape
+from lander.laws.leg import Crush, Leg, shape
+from lander.laws.leg_dynamics import leg_motion
+from lander.laws.leg_joints import ball_torque
 from lander.laws.leg_stepping import Course, LegState, start_state, step_leg
 from lander.laws.vectors import ZERO, Vector, apply, cross, from_rotation_vector, rotation
 from scipy.integrate import solve_ivp

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from .compiled import jit
-from .leg import Base
+from .leg_inertia import Base
 from .vectors import Quaternion, Vector, add, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation, scale
 
 

@@ -4,7 +4,9 @@ from typing import NamedTuple
 
 from .base_motion import BaseState, as_base
 from .compiled import jit
-from .leg import Leg, Nodes, carried, first_moment, leg_kinetic, leg_motion, mobility, shape, tangents
+from .leg import Leg, shape
+from .leg_dynamics import leg_motion, mobility, tangents
+from .leg_inertia import Nodes, carried, first_moment, leg_kinetic
 from .leg_stepping import LegState
 from .soil_stepping import InterfaceModel
 from .vectors import (

@@ -7,20 +7,10 @@ from .base_motion import BaseMotion, BaseState, as_base, base_at
 from .blocks import matrix, put_matrix, put_quaternion, put_vector, quaternion, vector
 from .compiled import jit
 from .interface import interface_model, leg_energy, pad_state
-from .leg import (
-    Crush,
-    Leg,
-    Loads,
-    axial_mass,
-    base_coupling,
-    bottomed,
-    lateral_mass,
-    leg_motion,
-    mount_wrench,
-    shape,
-    strokes,
-    tangents,
-)
+from .leg import Crush, Leg, Loads, bottomed, shape, strokes
+from .leg_dynamics import leg_motion, tangents
+from .leg_inertia import axial_mass, base_coupling, lateral_mass
+from .leg_reaction import mount_wrench
 from .leg_stepping import LegState, PadLoad, Stage, start_state, step_leg
 from .soil_stepping import InterfaceModel
 from .vectors import (

@@ -10,7 +10,11 @@ from typing import NamedTuple
 
 from .base_motion import BaseMotion, BaseState, as_base, base_at
 from .compiled import jit
-from .leg import Base, Crush, Leg, Motion, ball_torque, crushed, leg_motion, mobility, mount_wrench, shape, tangents, times_diagonal
+from .leg import Crush, Leg, crushed, shape
+from .leg_dynamics import Motion, leg_motion, mobility, tangents
+from .leg_inertia import Base, times_diagonal
+from .leg_joints import ball_torque
+from .leg_reaction import mount_wrench
 from .vectors import (
     ZERO,
     Matrix,

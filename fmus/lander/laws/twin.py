@@ -13,23 +13,11 @@ from numpy.typing import NDArray
 from .blocks import quaternion, vector
 from .compiled import jit
 from .footpad import Footpad, PadMotion, Wrench, pad_power, pad_wrench
-from .leg import (
-    Base,
-    Crush,
-    Leg,
-    Motion,
-    Shape,
-    accelerated,
-    axial_mass,
-    ball_torque,
-    base_coupling,
-    lateral_mass,
-    leg_motion,
-    mount_wrench,
-    shape,
-    tangents,
-    times_diagonal,
-)
+from .leg import Crush, Leg, Shape, shape
+from .leg_dynamics import Motion, leg_motion, tangents
+from .leg_inertia import Base, accelerated, axial_mass, base_coupling, lateral_mass, times_diagonal
+from .leg_joints import ball_torque
+from .leg_reaction import mount_wrench
 from .linear import put, solve_many
 from .rigid_body import Body
 from .soil import Soil
