@@ -40,7 +40,7 @@ def held(thrust: float) -> tuple[str, ...]:
 def cases() -> dict[str, Case]:
     """Every run by its folder: scenario and further arguments."""
     runs: dict[str, Case] = {name: (name, ()) for name in ("apollo11_lm5", "flat_symmetric", "footpad_drop")}
-    runs["flat_tight"] = ("flat_symmetric", ("--tolerance", "1e-6"))
+    runs["flat_tight"] = ("flat_symmetric", ("--tolerance", "1e-7"))
     for c in LANDINGS:
         scenario = f"apollo11_{c}"
         runs |= {scenario: (scenario, ()), f"{scenario}_twin": (f"{scenario}_twin", ())}

@@ -339,7 +339,7 @@ def footpad(runs: Path) -> str:
 
 def flat(runs: Path) -> str:
     rows = []
-    for name, label in (("flat_symmetric", "scenario, tolerance 1e-5 m"), ("flat_tight", "tolerance 1e-6 m")):
+    for name, label in (("flat_symmetric", "scenario, tolerance 1e-6 m"), ("flat_tight", "tolerance 1e-7 m")):
         s = summary(runs / name)
         groups = [list(s["penetration_m"].values()), list(s["skid_m"].values())]
         groups += [[s["strokes_m"][f"{leg}.{strut}"] for leg in LEGS] for strut in STRUTS]
