@@ -21,7 +21,7 @@ def test_a_landing_killed_at_half_time_resumes_to_the_same_bits(tmp_path: Path) 
     assert (done.returncode, done.stderr) == (0, "")
     ours, theirs = (pq.read_table(folder / "history.parquet") for folder in (out, whole))
     assert ours.column_names == theirs.column_names
-    assert theirs.num_rows > 140
+    assert theirs.num_rows > 100  # one row an accepted interval: through the touchdown of two feet, not a free flight
     assert theirs["soil+Z.penetration"].to_numpy()[-1] > 0.0        # it has touched down
     for name in theirs.column_names:
         assert ours[name].to_numpy().tobytes() == theirs[name].to_numpy().tobytes(), name
