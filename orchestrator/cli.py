@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from orchestrator.master.result import RunResult
     from orchestrator.simulation import Simulation
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, help="Steps the FMUs of a lunar lander's touchdown together and writes up what came of it.")
+ABOUT = "Steps the FMUs of a lunar lander's touchdown together and writes up what came of it."
+app = typer.Typer(add_completion=False, no_args_is_help=True, help=ABOUT)
 
 ScenarioName = Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated; the unit may be a glob.")]
