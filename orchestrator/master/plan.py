@@ -22,7 +22,6 @@ from orchestrator.master.slave import Binding, Interface, Kind, Slave, Vector, s
 from orchestrator.master.system import Link, System
 
 Places = NDArray[np.intp]
-MISMATCH = ("mismatch_velocity", "mismatch_angular_velocity")
 REFERENCE, VALID = "reference_", "reference_valid"
 SCHEDULED = "next_event_time"
 """Last part of the name of a Real output: a time a communication point must fall on, s."""
