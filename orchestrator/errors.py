@@ -4,7 +4,10 @@
     ├── UserError          exit code 2   the request cannot be run as written
     │   ├── ScenarioError                  the scenario file: bad TOML, unknown key, value of the wrong kind
     │   ├── UnitError                      a unit: missing or broken FMU, unknown parameter, value outside its range
-    │   └── WiringError                    a connection: unknown port, wrong unit of measure, an input fed twice
+    │   ├── WiringError                    a connection: unknown port, wrong unit of measure, an input fed twice
+    │   ├── MeasuredError                  a folder of measured data: missing file or column, wrong unit, no number
+    │   ├── AddressError                   a parameter or channel that the scenario does not have
+    │   └── EffectError                    an effect's file: unknown key, no parameter, a start beyond its limits
     └── RunError           exit code 3   the run started and cannot be trusted or finished
         ├── StepError                     a unit refused a step, reported an error or gave a value that is not finite
         └── TrustError                      the step control could not hold its tolerance
@@ -42,6 +45,18 @@ class UnitError(UserError):
 
 class WiringError(UserError):
     """A connection is at fault."""
+
+
+class MeasuredError(UserError):
+    """A folder of measured data is at fault."""
+
+
+class AddressError(UserError):
+    """A parameter or channel is named that the scenario does not have."""
+
+
+class EffectError(UserError):
+    """An effect's file is at fault."""
 
 
 class RunError(OrchestratorError):

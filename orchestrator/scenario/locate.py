@@ -18,8 +18,10 @@ def scenario_folder() -> Path | None:
 
 
 def all_scenarios() -> list[Path]:
+    """Those of the folder and of the folders in it; `candidates` holds effects."""
     folder = scenario_folder()
-    return sorted(folder.rglob("*.toml")) if folder else []
+    found = sorted(folder.rglob("*.toml")) if folder else []
+    return [path for path in found if "candidates" not in path.relative_to(folder or path).parts]
 
 
 def find_scenario(text: str) -> Path:

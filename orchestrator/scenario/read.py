@@ -9,7 +9,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from orchestrator.errors import ScenarioError, nearest
+from orchestrator.errors import ScenarioError
+from orchestrator.scenario.faults import first_fault
 from orchestrator.scenario.model import ScenarioTable, known_keys
 
 Tree = dict[str, Any]
@@ -25,7 +26,7 @@ def check_table(tree: Mapping[str, Any], where: str) -> ScenarioTable:
     try:
         table = ScenarioTable.model_validate(tree)
     except ValidationError as error:
-        raise ScenarioError(f"{where}: {_first_fault(error)}") from None
+        raise ScenarioError(f"{where}: {first_fault(error, known_keys)}") from None
     if not table.stop_time > table.start_time:
         raise ScenarioError(
             f"{where}: stop_time {table.stop_time:g} s is not after start_time {table.start_time:g} s; set a later stop_time"
@@ -79,18 +80,3 @@ def _anchor_paths(tree: Tree, folder: Path) -> None:
 
 def is_path(fmu: str) -> bool:
     return fmu.endswith(".fmu") or "/" in fmu or "\\" in fmu
-
-
-def _first_fault(error: ValidationError) -> str:
-    """Unknown keys first: a misspelt key is the usual cause of a missing one."""
-    faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
-    fault = faults[0]
-    path = fault["loc"]
-    place = ".".join(str(part + 1) if isinstance(part, int) else part for part in path) or "the scenario"
-    if fault["type"] == "extra_forbidden":
-        return f"{place}: unknown key; {nearest(str(path[-1]), known_keys(path[:-1]))}"
-    if fault["type"] == "missing":
-        return f"{place}: is missing; add it"
-    message = fault["msg"].removeprefix("Value error, ")
-    given = "" if isinstance(fault["input"], dict) else f" = {fault['input']!r}"
-    return f"{place}{given}: {message[0].lower()}{message[1:]}"
