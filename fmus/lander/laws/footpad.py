@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .compiled import jit
-from .soil import UNLATCHED, Soil, friction_scale, latched, normal_force, tangential_force
+from .soil import UNLATCHED, Soil, friction_bend, friction_scale, latched, normal_force, tangential_force
 from .surface import Surface, depth_at, normal_at
+from .tangent_term import tangent_term
 from .vectors import (
     ZERO,
     Matrix,
@@ -123,15 +124,21 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
         velocity = add(motion.velocity, cross(motion.rate, arm))
         push = normal_force(soil, depth, -dot(normal, velocity), memory[i, DATUM])
         slip = tangential(normal, velocity)
-        f = axpy(push.force, normal, tangential_force(soil, push.force, slip, slide_at(memory, i, place, depth, normal)))
-        force, torque = add(force, f), add(torque, cross(arm, f))
+        slide = slide_at(memory, i, place, depth, normal)
+        grip = max(push.force, 0.0)  # soil that pulls gives no friction
+        f = axpy(push.force, normal, tangential_force(soil, grip, slip, slide))
 
-        k = friction_scale(soil, sqrt(dot(slip, slip)))
-        along = axpy(-k, slip, normal)  # how F follows F_n
+        speed = sqrt(dot(slip, slip))
+        k = friction_scale(soil, speed)
+        along = axpy(-k, slip, normal) if push.force >= 0.0 else normal  # how F follows F_n
         plane = plus(identity(1.0), times(-1.0, outer(normal, normal)))
         k_i = plus(times(push.stiffness, outer(along, normal)), times(soil.plowing, plane))
-        turn = times(-((k / soil.friction) ** 2) if soil.friction > 0.0 else 0.0, outer(slip, slip))
-        c_i = plus(times(push.damping, outer(along, normal)), times(push.force * k, plus(plane, turn)))
+        turn = times(friction_bend(soil, speed, k), outer(slip, slip))
+        c_i = plus(times(push.damping, outer(along, normal)), times(grip * k, plus(plane, turn)))
+        if soil.effects.tangent_term.coefficient != 0.0:
+            term = tangent_term(soil.effects.tangent_term, depth, slip, slide, normal, plane)
+            f, k_i, c_i = add(f, term.force), plus(k_i, term.stiffness), plus(c_i, term.damping)
+        force, torque = add(force, f), add(torque, cross(arm, f))
         t = with_point(t, k_i, c_i, skew(arm))
     return Wrench(force, torque), t
 

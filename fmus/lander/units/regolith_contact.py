@@ -3,15 +3,39 @@
 from typing import Any
 
 from ..laws.footpad import COLUMNS, POINTS, Footpad
+from ..laws.generic_terms import NormalTerm
 from ..laws.soil import Soil
+from ..laws.soil_effects import SoilEffects
 from ..laws.soil_exchange import advance_soil, start_soil
 from ..laws.surface import Surface, inclined_plane
+from ..laws.tangent_term import TangentTerm
 from ..shell import Unit, UnitError, input_, output, parameter, state
 
 DEEP = 0.05  # m: a pad that starts deeper than this is a mistake of the scenario, not a landing
 
 
 PAD = ("pad.position", "pad.quaternion", "pad.velocity", "pad.angular_velocity")
+
+
+EFFECTS = (  # beyond the paper (decision 9); null unless set
+    parameter("layer_stiffness", 0.0, "N/m", "per footpad, of a layer that begins at layer_depth", minimum=0.0),
+    parameter("layer_depth", 0.02, "m", "where the stiffer layer begins", minimum=0.0),
+    parameter("inertial_drag", 0.0, "N.s2/m2", "A per footpad: A times the sink rate's square while sinking", minimum=0.0),
+    parameter("adhesion", 0.0, "N", "per footpad: pulls it down while it rises in the soil", minimum=0.0),
+    parameter("rebound_share", 0.0, "1", "of the spring's force at the datum, given back on the way out", minimum=0.0, maximum=1.0),
+    parameter("rebound_depth", 5e-3, "m", "over which it is given back", minimum=1e-6, maximum=1.0),
+    parameter("stribeck_rise", 0.0, "1", "of the friction coefficient toward rest", minimum=0.0, maximum=10.0),
+    parameter("stribeck_velocity", 0.05, "m/s", "over which that rise dies", minimum=1e-5),
+    parameter("normal_term", 0.0, "N", "generic, per footpad: F_n += c (depth/0.01 m)^a (rate/0.1 m/s)^b"),
+    parameter("normal_term_depth", 0.0, "1", "a", minimum=0.0, maximum=6.0),
+    parameter("normal_term_rate", 0.0, "1", "b", minimum=0.0, maximum=6.0),
+    parameter("normal_term_phase", 0, "1", "0: always, 1: sinking, 2: rising, 3: against motion", integer=True, minimum=0, maximum=3),
+    parameter("tangent_term", 0.0, "N", "generic, per footpad: F_t -= c (depth/0.01 m)^a (speed/0.1 m/s)^b (slide/0.1 m)^d"),
+    parameter("tangent_term_depth", 0.0, "1", "a", minimum=0.0, maximum=6.0),
+    parameter("tangent_term_speed", 0.0, "1", "b", minimum=0.0, maximum=6.0),
+    parameter("tangent_term_slide", 0.0, "1", "d", minimum=0.0, maximum=6.0),
+    parameter("tangent_term_phase", 0, "1", "0: against slip; 1: against slide", integer=True, minimum=0, maximum=1),
+)
 
 
 class RegolithContact(Unit):
@@ -21,6 +45,7 @@ class RegolithContact(Unit):
            about 0.05 mm/s (below 0.1 mm/s), and a rebound is free of force.
     law 2  rate-independent compaction: plastic flow on K_n δ^p, elastic unloading over the band b, no creep.
     F_t = -μ F_n v/|v| - K_p δ_t against slip and slide. Table 4 is per footpad: a fifth of K_n, C_n and K_p goes to each point.
+    Effects beyond the paper (layer to tangent_term) are null unless set, per footpad too; docs/physics.md has their equations.
 
     The pad is integrated here against the law over each interval, with the leg as reduced interface model (pad.model_*); without a
     model the
@@ -41,6 +66,7 @@ class RegolithContact(Unit):
         parameter("friction", 0.33, "1", "μ (Table 4)", minimum=0.0),
         parameter("plowing", 1454.0, "N/m", "K_p per footpad (Table 4)", minimum=0.0),
         parameter("slip_velocity", 1e-3, "m/s", "regularises the sign of Coulomb's friction", minimum=1e-7),
+        *EFFECTS,
         parameter("ground_slope", 0.0, "rad", "of the plane; at azimuth 0 it rises toward +Z of L", minimum=-1.2, maximum=1.2),
         parameter("ground_azimuth", 0.0, "rad", "of the slope about L's x axis", minimum=-7.0, maximum=7.0),
         parameter("ground_origin", (0.0, 0.0, 0.0), "m", "a point of the plane, frame L"),
@@ -129,7 +155,7 @@ def soil_of(unit: Unit, prefix: str = "", element: int = 0) -> tuple[Soil, Surfa
     share = 1.0 / POINTS
 
     def of(name: str) -> float:
-        return float(unit[prefix + name][element])
+        return value_of(unit, prefix + name, element)
 
     soil = Soil(
         int(of("law")),
@@ -142,9 +168,43 @@ def soil_of(unit: Unit, prefix: str = "", element: int = 0) -> tuple[Soil, Surfa
         of("friction"),
         share * of("plowing"),
         of("slip_velocity"),
+        effects_of(unit, prefix, element),
     )
     x, y, z = unit[f"{prefix}ground_origin"].reshape(-1, 3)[element].tolist()
     return soil, inclined_plane(of("ground_slope"), of("ground_azimuth"), (x, y, z))
+
+
+def value_of(unit: Unit, name: str, element: int) -> float:
+    """One element of a parameter."""
+    return float(unit[name][element])
+
+
+def effects_of(unit: Unit, prefix: str, element: int) -> SoilEffects:
+    """Effects beyond the paper on one contact point, as `soil_of` reads the soil."""
+    share = 1.0 / POINTS
+
+    def of(name: str) -> float:
+        return value_of(unit, prefix + name, element)
+
+    return SoilEffects(
+        any(of(name) != 0.0 for name in ("adhesion", "rebound_share", "normal_term")),
+        share * of("layer_stiffness"),
+        of("layer_depth"),
+        share * of("inertial_drag"),
+        share * of("adhesion"),
+        of("rebound_share"),
+        of("rebound_depth"),
+        of("stribeck_rise"),
+        of("stribeck_velocity"),
+        NormalTerm(share * of("normal_term"), of("normal_term_depth"), of("normal_term_rate"), int(of("normal_term_phase"))),
+        TangentTerm(
+            share * of("tangent_term"),
+            of("tangent_term_depth"),
+            of("tangent_term_speed"),
+            of("tangent_term_slide"),
+            int(of("tangent_term_phase")),
+        ),
+    )
 
 
 def refuse_deep(depth: float, which: str) -> None:
