@@ -5,14 +5,14 @@ acceleration, and for each leg R p'' and its pad's angular acceleration: 6 + 6 n
 stage costs in proportion to the number of legs.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import quaternion, vector
 from .compiled import jit
-from .footpad import Footpad, PadMotion, Wrench, pad_power, pad_wrench
+from .footpad import POINTS, Footpad, PadMotion, PadTangents, Wrench, lever, pad_power, pad_wrench
 from .leg import Crush, Leg, Shape, shape
 from .leg_dynamics import Motion, leg_motion, tangents
 from .leg_inertia import Base, accelerated, axial_mass, base_coupling, lateral_mass, times_diagonal
@@ -20,8 +20,8 @@ from .leg_joints import ball_torque
 from .leg_reaction import mount_wrench
 from .linear import put, solve_many
 from .rigid_body import Body
-from .soil import Soil
-from .surface import Surface
+from .soil import PUBLISHED, Soil
+from .surface import Surface, depth_at, normal_at
 from .vectors import (
     Matrix,
     Quaternion,
@@ -48,8 +48,7 @@ from .vectors import (
 )
 
 Array = NDArray[np.float64]
-NEWTON_LIMIT = 40
-VELOCITY_TOLERANCE = 1e-10  # m/s
+SEARCH = 5  # trials of shorter steps before Newton's is taken even where more is missing afterwards
 GYRATION = 0.3  # m: weighs rotations against translations in norms
 # columns of a leg's row in `Flight.legs`
 P, V, Q, W, CRUSH, LEG_COLUMNS = 0, 3, 6, 10, 13, 18
@@ -73,6 +72,13 @@ class Flight(NamedTuple):
     body: Array  # (13,)
     legs: Array  # (n, 18)
     memory: Array  # (n, 5, 8)
+
+
+class Newton(NamedTuple):
+    """When to stop solving a stage."""
+
+    tolerance: float  # last change of any velocity, m/s
+    steps: int  # before the stage is given up
 
 
 class Engine(NamedTuple):
@@ -106,12 +112,27 @@ class LegAt(NamedTuple):
     at: Shape
     motion: Motion
     pad: PadMotion
+    soft: PadTangents
     wrench: Wrench
     ball: Vector  # torque of the ball joint on the pad, B
+    position: Vector  # of the ball joint, B
     residual: Vector  # force on p missing, N, L
     twist: Vector  # torque on the pad missing, N m, L
     force: Vector  # on the body, N, B
     torque: Vector  # on the body about B's origin, N m, B
+
+
+class Blocks(NamedTuple):
+    """Newton's blocks of one leg, all in L: of its own unknowns, and of the body's through the ball joint."""
+
+    mass: Matrix  # with the struts' stiffness and damping
+    straight: Matrix  # the base's acceleration on p
+    spinning: Matrix  # its angular acceleration on p
+    arm: Matrix  # [p x]
+    k_xx: Matrix  # the soil's
+    k_xr: Matrix
+    k_rx: Matrix
+    k_rr: Matrix  # with the pad's inertia
 
 
 class BodyAt(NamedTuple):
@@ -153,8 +174,8 @@ def leg_trial(
     crush: Crush,
     memory: Array,
     h: float,
-) -> tuple[LegAt, Array]:
-    """A leg with its soil at trial accelerations a (6): what is missing in its equations, and its Newton blocks (6, 6) as [M] first."""
+) -> LegAt:
+    """A leg with its soil at trial accelerations a (6): what is missing in its equations."""
     r = body.turned
     acceleration = apply_transposed(r, vector(a, 0))
     v = axpy(h, acceleration, vector(explicit, V))
@@ -178,25 +199,32 @@ def leg_trial(
     twist = sub(add(wrench.torque, apply(r, ball)), apply(attitude, inertial))
     nodes = accelerated(leg, at, law.nodes, scale(-1.0, missing))
     force, torque = mount_wrench(leg, body.base, p, at, nodes, own, ball)
+    return LegAt(at, law, motion, soft, wrench, ball, p, residual, twist, force, torque)
 
-    stiffness, damping = tangents(leg, at, law.loads, law.damping)
+
+@jit
+def leg_blocks(leg: Leg, body: BodyAt, trial: LegAt, h: float) -> Blocks:
+    """Newton's blocks at a trial: how what is missing answers the accelerations."""
+    r, at, soft, attitude = body.turned, trial.at, trial.soft, trial.pad.attitude
+    m_e, m_n = axial_mass(leg), lateral_mass(leg, at)
+    stiffness, damping = tangents(leg, at, trial.motion.loads, trial.motion.damping)
     struts = plus(times(h, damping), times(h * h, stiffness))
     mass = plus(identity(m_n), times(m_e - m_n, outer(at.axis, at.axis)))
-    straight, spinning = base_coupling(leg, at, p)
-    blocks = np.zeros((18, 6))
+    straight, spinning = base_coupling(leg, at, trial.position)
     turned = transpose(r)
-    put(blocks, 0, 0, product(r, product(plus(mass, struts), turned)))
-    put(blocks, 0, 3, product(r, product(straight, turned)))
     h2 = h * h
-    put(blocks, 6, 0, plus(times(h, soft.c_xx), times(h2, soft.k_xx)))
-    put(blocks, 6, 3, plus(times(h, soft.c_xr), times(h2, soft.k_xr)))
-    put(blocks, 9, 0, plus(times(h, soft.c_rx), times(h2, soft.k_rx)))
     inertia = product(attitude, product(diagonal(leg.pad_inertia), transpose(attitude)))
     turning = plus(inertia, identity(h * leg.joint_damping))
-    put(blocks, 9, 3, plus(turning, plus(times(h, soft.c_rr), times(h2, soft.k_rr))))
-    put(blocks, 12, 0, skew(apply(r, p)))
-    put(blocks, 12, 3, product(r, product(spinning, turned)))
-    return LegAt(at, law, motion, wrench, ball, residual, twist, force, torque), blocks
+    return Blocks(
+        product(r, product(plus(mass, struts), turned)),
+        product(r, product(straight, turned)),
+        product(r, product(spinning, turned)),
+        skew(apply(r, trial.position)),
+        plus(times(h, soft.c_xx), times(h2, soft.k_xx)),
+        plus(times(h, soft.c_xr), times(h2, soft.k_xr)),
+        plus(times(h, soft.c_rx), times(h2, soft.k_rx)),
+        plus(turning, plus(times(h, soft.c_rr), times(h2, soft.k_rr))),
+    )
 
 
 @jit
@@ -206,54 +234,39 @@ def diagonal(d: Vector) -> Matrix:
 
 
 @jit
-def block(a: Array, i: int, j: int) -> Matrix:
-    """3x3 block of a at (i, j)."""
-    return (
-        (a[i, j], a[i, j + 1], a[i, j + 2]),
-        (a[i + 1, j], a[i + 1, j + 1], a[i + 1, j + 2]),
-        (a[i + 2, j], a[i + 2, j + 1], a[i + 2, j + 2]),
-    )
-
-
-@jit
-def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
+def eliminate(trial: LegAt, b: Blocks, work: Work, i: int) -> None:
     """Solve leg i for its unknowns in terms of the body's, and add what remains to the body's equations.
 
     A y + C β = r with A = [[M + S + K, K_xr], [K_rx, I + K_rr]], C = [[(M_c + K) J], [K_rx J]], J = [1, -[p x]]: K is the soil's, S
     the struts'.
     """
-    k_xx, k_xr, k_rx, k_rr = block(b, 6, 0), block(b, 6, 3), block(b, 9, 0), block(b, 9, 3)
-    mass, straight, arm, spinning = block(b, 0, 0), block(b, 0, 3), block(b, 12, 0), block(b, 12, 3)
-    back = times(-1.0, arm)
-    joint = plus(straight, k_xx)
-    turn = plus(spinning, product(k_xx, back))
+    back = times(-1.0, b.arm)
     work.left[:, :] = 0.0
     work.right[:, :] = 0.0
-    put(work.left, 0, 0, plus(mass, k_xx))
-    put(work.left, 0, 3, k_xr)
-    put(work.left, 3, 0, k_rx)
-    put(work.left, 3, 3, k_rr)
-    put(work.right, 0, 0, joint)
-    put(work.right, 0, 3, turn)
-    put(work.right, 3, 0, k_rx)
-    put(work.right, 3, 3, product(k_rx, back))
+    put(work.left, 0, 0, plus(b.mass, b.k_xx))
+    put(work.left, 0, 3, b.k_xr)
+    put(work.left, 3, 0, b.k_rx)
+    put(work.left, 3, 3, b.k_rr)
+    put(work.right, 0, 0, plus(b.straight, b.k_xx))
+    put(work.right, 0, 3, plus(b.spinning, product(b.k_xx, back)))
+    put(work.right, 3, 0, b.k_rx)
+    put(work.right, 3, 3, product(b.k_rx, back))
     for j in range(3):
         work.right[j, 6] = trial.residual[j]
         work.right[3 + j, 6] = trial.twist[j]
     solve_many(work.left, work.right)
     work.legs[i, :, :] = work.right
     # body: B β + Jᵀ [K J β + K y_x + K_xr y_r] + M_bᵀ y_x = r_b, with y = solved - (solved columns) β
-    direct = k_xx
-    put(work.body, 0, 0, direct)
-    put(work.body, 0, 3, product(direct, back))
-    put(work.body, 3, 0, product(arm, direct))
-    put(work.body, 3, 3, product(arm, product(direct, back)))
+    put(work.body, 0, 0, b.k_xx)
+    put(work.body, 0, 3, product(b.k_xx, back))
+    put(work.body, 3, 0, product(b.arm, b.k_xx))
+    put(work.body, 3, 3, product(b.arm, product(b.k_xx, back)))
     for column in range(7):
         y_x = (work.right[0, column], work.right[1, column], work.right[2, column])
         y_r = (work.right[3, column], work.right[4, column], work.right[5, column])
-        soft = add(apply(k_xx, y_x), apply(k_xr, y_r))
-        f = add(soft, apply_transposed(straight, y_x))
-        m = add(apply(arm, soft), apply_transposed(spinning, y_x))
+        soft = add(apply(b.k_xx, y_x), apply(b.k_xr, y_r))
+        f = add(soft, apply_transposed(b.straight, y_x))
+        m = add(apply(b.arm, soft), apply_transposed(b.spinning, y_x))
         for j in range(3):
             if column < 6:
                 work.body[j, column] -= f[j]
@@ -264,89 +277,148 @@ def eliminate(trial: LegAt, b: Array, work: Work, i: int) -> None:
 
 
 @jit
+def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, explicit: Array, turns: Array, a: Array, h: float, i: int) -> LegAt:
+    """Leg i at trial accelerations a (n + 1, 6)."""
+    row = start.legs[i]
+    crush = Crush(row[CRUSH], row[CRUSH + 1], row[CRUSH + 2], row[CRUSH + 3], row[CRUSH + 4])
+    soil, surface, turn = vehicle.soils[i], vehicle.surfaces[i], vector(turns[1 + i], 0)
+    return leg_trial(
+        vehicle.legs[i], soil, surface, vehicle.pad, body, explicit[i], quaternion(row, Q), turn, a[1 + i], crush, start.memory[i], h
+    )
+
+
+@jit
+def powers(body: BodyAt, legs: Any, force: Vector, torque: Vector) -> Array:
+    """Row 0: the engine's power, W; rows 1..: soil, struts, ball joint of each leg."""
+    r = body.turned
+    power = np.zeros((1 + len(legs), 4))
+    power[0, 0] = dot(force, apply_transposed(r, body.velocity)) + dot(torque, body.rate)
+    for i in range(len(legs)):
+        trial = legs[i]
+        relative = sub(apply_transposed(r, trial.pad.rate), add(body.rate, cross(trial.at.axis, trial.at.swing)))
+        power[1 + i, 0] = pad_power(trial.wrench, trial.pad)
+        power[1 + i, 1] = trial.motion.power
+        power[1 + i, 2] = dot(trial.ball, relative)
+    return power
+
+
+class Trial(NamedTuple):
+    """Everything at trial accelerations."""
+
+    body: BodyAt
+    legs: Any  # a list of LegAt
+    force: Vector  # missing in the body's equations, N, L
+    torque: Vector  # N m, L
+    size: float  # of all that is missing, (m/s2)²
+
+
+class Stage(NamedTuple):
+    """What is given about a stage."""
+
+    body: Array  # explicit row
+    legs: Array  # explicit rows
+    turns: Array  # explicit rotation vectors since the step's start, (n + 1, 3): the body's in B, the pads' in L
+    force: Vector  # from outside on the body, N, B
+    torque: Vector  # N m, B
+    h: float  # s: velocity = explicit + h acceleration
+
+
+@jit
+def trial_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array) -> Trial:
+    """What is missing at trial accelerations a (n + 1, 6)."""
+    n = len(vehicle.legs)
+    gravity, mass, inertia = vehicle.body.gravity, vehicle.body.mass, vehicle.body.inertia
+    body = body_at(quaternion(start.body, QX), given.body, vector(given.turns[0], 0), a[0], gravity, given.h)
+    legs = [leg_at(vehicle, start, body, given.legs, given.turns, a, given.h, i) for i in range(n)]
+    size, f, m = 0.0, given.force, given.torque
+    for i in range(n):
+        trial = legs[i]
+        f, m = add(f, trial.force), add(m, trial.torque)
+        unit = 1.0 / axial_mass(vehicle.legs[i])
+        size += unit * unit * dot(trial.residual, trial.residual)
+        spin = GYRATION / vehicle.legs[i].pad_inertia[0]
+        size += spin * spin * dot(trial.twist, trial.twist)
+    r_f = apply(body.turned, axpy(-mass, body.base.pull, f))
+    gyroscopic = cross(body.rate, apply(inertia, body.rate))
+    r_m = apply(body.turned, sub(sub(m, gyroscopic), apply(inertia, body.base.spin_up)))
+    return Trial(body, legs, r_f, r_m, size + (dot(r_f, r_f) + dot(r_m, r_m)) / (mass * mass))
+
+
+@jit
+def standstill_share(vehicle: Vehicle, before: Trial, now: Trial) -> float:
+    """The smallest share of a step at which a point in the soil stops sinking, where the published law's force jumps; 1: none does."""
+    share = 1.0
+    for i in range(len(vehicle.legs)):
+        soil, was, new = vehicle.soils[i], before.legs[i].pad, now.legs[i].pad
+        if soil.law != PUBLISHED:
+            continue
+        for j in range(POINTS):
+            arm = lever(vehicle.pad, new.attitude, j)
+            place = add(new.position, arm)
+            if depth_at(vehicle.surfaces[i], place) > 0.0:
+                normal = normal_at(vehicle.surfaces[i], place)
+                above = -dot(normal, add(was.velocity, cross(was.rate, arm))) - 0.5 * soil.residual
+                below = -dot(normal, add(new.velocity, cross(new.rate, arm))) - 0.5 * soil.residual
+                if above * below < 0.0:
+                    share = min(share, above / (above - below))
+    return share
+
+
+@jit
+def searched(vehicle: Vehicle, start: Flight, given: Stage, before: Trial, a: Array, step: Array) -> Trial:
+    """The trial after Newton's step, or after a part of it where more is missing than before; a goes back with it."""
+    now = trial_at(vehicle, start, given, a)
+    share, half = 1.0, 1.0
+    for k in range(SEARCH):
+        if now.size <= before.size:
+            break
+        new = standstill_share(vehicle, before, now) if k == 0 else 1.0
+        if new == 1.0:
+            half *= 0.5
+            new = half
+        for i in range(a.shape[0]):
+            for j in range(6):
+                a[i, j] += (new - share) * step[i, j]
+        share = new
+        now = trial_at(vehicle, start, given, a)
+    return now
+
+
+@jit
+def newton_step(vehicle: Vehicle, at: Trial, h: float, a: Array, step: Array, work: Work) -> float:
+    """Add Newton's step to a; gives its weighted square, (m/s2)², negative where there is none."""
+    r = at.body.turned
+    work.body[:, :] = 0.0
+    work.rest[:, :] = 0.0
+    for i in range(len(vehicle.legs)):
+        eliminate(at.legs[i], leg_blocks(vehicle.legs[i], at.body, at.legs[i], h), work, i)
+    put(work.body, 0, 0, identity(vehicle.body.mass))
+    put(work.body, 3, 3, product(r, product(vehicle.body.inertia, transpose(r))))
+    for j in range(3):
+        work.rest[j, 0] += at.force[j]
+        work.rest[3 + j, 0] += at.torque[j]
+    if not solve_many(work.body, work.rest):
+        return -1.0
+    return advance_unknowns(a, step, work, len(vehicle.legs))
+
+
+@jit
 def stage(
-    vehicle: Vehicle,
-    engine: Engine,
-    t: float,
-    h: float,
-    start: Flight,
-    explicit_body: Array,
-    explicit_legs: Array,
-    turns: Array,
-    a: Array,
-    step: Array,
-    work: Work,
+    vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Array, step: Array, work: Work
 ) -> tuple[bool, Array]:
     """Solve one stage for the accelerations a (n + 1, 6), row 0 the body's; they hold the guess on entry.
 
-    turns  explicit rotation vectors since the step's start, (n + 1, 3): the body's in B, the pads' in L
-    Returns whether Newton converged and a row (n + 1, 4) of powers: engine; per leg soil, struts, ball joint.
+    Returns whether Newton converged and the powers, before its last, negligible step.
     """
-    n = len(vehicle.legs)
-    power = np.zeros((n + 1, 4))
-    best, share, done = 1e300, 1.0, False
-    gravity, mass = vehicle.body.gravity, vehicle.body.mass
-    force = axpy(t, engine.force_slope, engine.force)
-    torque = axpy(t, engine.torque_slope, engine.torque)
-    for _ in range(NEWTON_LIMIT):
-        body = body_at(quaternion(start.body, QX), explicit_body, vector(turns[0], 0), a[0], gravity, h)
-        r = body.turned
-        f, m = force, torque
-        work.body[:, :] = 0.0
-        work.rest[:, :] = 0.0
-        size = 0.0
-        for i in range(n):
-            row = start.legs[i]
-            crush = Crush(row[CRUSH], row[CRUSH + 1], row[CRUSH + 2], row[CRUSH + 3], row[CRUSH + 4])
-            trial, blocks = leg_trial(
-                vehicle.legs[i],
-                vehicle.soils[i],
-                vehicle.surfaces[i],
-                vehicle.pad,
-                body,
-                explicit_legs[i],
-                quaternion(row, Q),
-                vector(turns[1 + i], 0),
-                a[1 + i],
-                crush,
-                start.memory[i],
-                h,
-            )
-            f, m = add(f, trial.force), add(m, trial.torque)
-            unit = 1.0 / axial_mass(vehicle.legs[i])
-            size += unit * unit * dot(trial.residual, trial.residual)
-            spin = GYRATION / vehicle.legs[i].pad_inertia[0]
-            size += spin * spin * dot(trial.twist, trial.twist)
-            eliminate(trial, blocks, work, i)
-            if done:
-                relative = sub(apply_transposed(r, trial.pad.rate), add(body.rate, cross(trial.at.axis, trial.at.swing)))
-                power[1 + i, 0] = pad_power(trial.wrench, trial.pad)
-                power[1 + i, 1] = trial.motion.power
-                power[1 + i, 2] = dot(trial.ball, relative)
-        if done:
-            power[0, 0] = dot(force, apply_transposed(r, body.velocity)) + dot(torque, body.rate)
-            return True, power
-        inertia = vehicle.body.inertia
-        r_f = apply(r, axpy(-mass, body.base.pull, f))
-        gyroscopic = cross(body.rate, apply(inertia, body.rate))
-        r_m = apply(r, sub(sub(m, gyroscopic), apply(inertia, body.base.spin_up)))
-        size += (dot(r_f, r_f) + dot(r_m, r_m)) / (mass * mass)
-        if size > best and share > 1e-4:
-            share *= 0.5
-            for i in range(n + 1):
-                for j in range(6):
-                    a[i, j] -= share * step[i, j]
-            continue
-        best, share = size, 1.0
-        put(work.body, 0, 0, identity(mass))
-        put(work.body, 3, 3, product(r, product(inertia, transpose(r))))
-        for j in range(3):
-            work.rest[j, 0] += r_f[j]
-            work.rest[3 + j, 0] += r_m[j]
-        if not solve_many(work.body, work.rest):
-            return False, power
-        done = h * h * advance_unknowns(a, step, work, n) < VELOCITY_TOLERANCE * VELOCITY_TOLERANCE
-    return False, power
+    now = trial_at(vehicle, start, given, a)
+    for _ in range(newton.steps):
+        size = newton_step(vehicle, now, given.h, a, step, work)
+        if size < 0.0:
+            break
+        if given.h * given.h * size < newton.tolerance * newton.tolerance:
+            return True, powers(now.body, now.legs, given.force, given.torque)
+        now = searched(vehicle, start, given, now, a, step)
+    return False, np.zeros((a.shape[0], 4))
 
 
 @jit

@@ -11,12 +11,15 @@ from .footpad import PadMotion, deepest, remember, start_memory
 from .leg import Crush, crushed
 from .leg_stepping import GAMMA, start_state
 from .rigid_body import BodyState
-from .twin import BODY_COLUMNS, CRUSH, LEG_COLUMNS, QX, VX, WX, Engine, Flight, P, Q, V, Vehicle, W, X, scratch, stage
+from .twin import BODY_COLUMNS, CRUSH, LEG_COLUMNS, QX, VX, WX, Engine, Flight, Newton, P, Q, Stage, V, Vehicle, W, X, scratch, stage
 from .vectors import add, apply, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation
 
 Array = NDArray[np.float64]
 ERROR_CONSTANT = 0.0404  # of SDIRK2: 3 γ² - 2 γ³ - 1/6
 SMALLEST = 1e-9  # s
+TIGHTEST = 1e-10  # m/s, of Newton
+NEWTON_STEPS = 12  # before a step is refused
+EXACT = Newton(TIGHTEST, 40)
 ENGINE = 0  # column of the ledger in row 0, the body's
 SOIL, STRUTS, BALL = range(3)  # columns in the rows of the legs
 
@@ -151,6 +154,19 @@ def local_error(before: Array, one: Array, two: Array, h: float) -> float:
 
 
 @jit
+def stage_of(explicit: Flight, turns: Array, engine: Engine, t: float, h: float) -> Stage:
+    """A stage at a time t after the start of the interval."""
+    force, torque = axpy(t, engine.force_slope, engine.force), axpy(t, engine.torque_slope, engine.torque)
+    return Stage(explicit.body, explicit.legs, turns, force, torque, h)
+
+
+@jit
+def newton_of(tolerance: float) -> Newton:
+    """Newton's share of a local error (m/s): three hundredths of 1e-2, and falling with its square to what rounding leaves."""
+    return Newton(max(TIGHTEST, 3.0 * tolerance * tolerance), NEWTON_STEPS)
+
+
+@jit
 def integrate(
     vehicle: Vehicle, engine: Engine, settings: Settings, f: Flight, a: Array, ledger: Array, touch: Array, time: float, interval: float
 ) -> Progress:
@@ -161,7 +177,7 @@ def integrate(
     touch   (n,) instants of first contact
     """
     n = len(vehicle.legs)
-    work = scratch(n)
+    work, newton = scratch(n), newton_of(settings.tolerance)
     turns = np.zeros((n + 1, 3))
     delta = np.zeros((n + 1, 6))
     t, h = 0.0, min(settings.first, settings.longest)
@@ -172,13 +188,13 @@ def integrate(
         g = GAMMA * h
         begin = explicit_part(vehicle, f, 0.0, a, f, turns)
         one = a.copy()
-        ok, power_1 = stage(vehicle, engine, t + g, g, f, begin.body, begin.legs, turns, one, delta, work)
+        ok, power_1 = stage(vehicle, newton, f, stage_of(begin, turns, engine, t + g, g), one, delta, work)
         middle = stage_state(vehicle, f, begin, turns, one, g)
         between = explicit_part(vehicle, f, h - g, one, middle, turns)
         two = one.copy()
         error = 1e300
         if ok:
-            ok, power_2 = stage(vehicle, engine, t + h, g, f, between.body, between.legs, turns, two, delta, work)
+            ok, power_2 = stage(vehicle, newton, f, stage_of(between, turns, engine, t + h, g), two, delta, work)
             error = local_error(a, one, two, h) if ok else 1e300
         if error > settings.tolerance and h > SMALLEST:
             rejected += 1
@@ -226,9 +242,9 @@ def start_accelerations(vehicle: Vehicle, engine: Engine, f: Flight, a: Array) -
     """
     n = len(vehicle.legs)
     a[:, :] = 0.0
-    step = np.zeros((n + 1, 6))
+    step, turns, work = np.zeros((n + 1, 6)), np.zeros((n + 1, 3)), scratch(n)
     for _ in range(50):
-        ok, _power = stage(vehicle, engine, 0.0, 1e-12, f, f.body, f.legs, np.zeros((n + 1, 3)), a, step, scratch(n))
+        ok, _power = stage(vehicle, EXACT, f, stage_of(f, turns, engine, 0.0, 1e-12), a, step, work)
         if not ok or np.abs(step).max() < 1e-9:  # m/s2, rad/s2
             return ok
     return True
