@@ -403,9 +403,7 @@ def newton_step(vehicle: Vehicle, at: Trial, h: float, a: Array, step: Array, wo
 
 
 @jit
-def stage(
-    vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Array, step: Array, work: Work
-) -> tuple[bool, Array]:
+def stage(vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Array, step: Array, work: Work) -> tuple[bool, Array]:
     """Solve one stage for the accelerations a (n + 1, 6), row 0 the body's; they hold the guess on entry.
 
     Returns whether Newton converged and the powers, before its last, negligible step.
