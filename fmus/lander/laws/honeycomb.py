@@ -22,6 +22,7 @@ class Core(NamedTuple):
     width: float  # s, m
     damping: float  # c, N s/m
     datum_weight: float  # what w_L is divided by: DATUM_WEIGHT, or 1 for eq. 3 to the letter
+    hardening: float = 0.0  # k, s/m: the loads grow by 1 + k v with the rate of crushing
 
 
 class Stop(NamedTuple):
@@ -61,6 +62,15 @@ def stage_load(core: Core, d: float, d_max: float) -> Tangent:
 
 
 @jit
+def hardened(core: Core, load: Tangent, v: float) -> Tangent:
+    """A stage's load times 1 + k max(0, v): honeycomb that crushes faster resists more. Dissipative."""
+    if v <= 0.0:
+        return load
+    more = 1.0 + core.hardening * v
+    return Tangent(more * load.force, more * load.stiffness, core.hardening * load.force)
+
+
+@jit
 def core_force(core: Core, d: float, v: float, crushed: float) -> Tangent:
     """F = min(F_s, w_L (F_s + c v)) >= 0, N: eqs. 1 and 3 with the paper's damping.
 
@@ -69,9 +79,12 @@ def core_force(core: Core, d: float, v: float, crushed: float) -> Tangent:
     F_s is the current stage's load. Damping acts inside the elastic band only (through w_L) and elastic plus damping force is
     saturated at F_s, so that the load-stroke table is conserved. w_L is divided by its value at the datum, 0.9975: eq. 3 to the letter
     crushes at 0.25 % less than Table 3's load, which the paper's own Fig. 8 (0.07 %) rules out (docs/decisions/0004).
+    With `hardening` F_s grows with the rate.
     """
     d_max = max(crushed, d)
     load = stage_load(core, d, d_max)
+    if core.hardening > 0.0:
+        load = hardened(core, load, v)
     w = transition(d_max - d, core.width)
     w_L = w.force / core.datum_weight
     slope = -w.stiffness / core.datum_weight if d < d_max else 0.0  # on the virgin curve d_MAX moves along
@@ -81,7 +94,7 @@ def core_force(core: Core, d: float, v: float, crushed: float) -> Tangent:
         return load
     if force <= 0.0:
         return Tangent(0.0, 0.0, 0.0)
-    return Tangent(force, slope * viscous + w_L * load.stiffness, w_L * core.damping)
+    return Tangent(force, slope * viscous + w_L * load.stiffness, w_L * (load.damping + core.damping))
 
 
 @jit

@@ -13,6 +13,7 @@ All vectors in B unless said otherwise; the base's accelerations are those of a 
 from typing import NamedTuple
 
 from .compiled import jit
+from .generic_terms import PRIMARIES, SECONDARIES, StrutTerm, strut_term
 from .honeycomb import Core, Stop, Tangent, primary_force, secondary_force
 from .leg_geometry import LegGeometry
 from .vectors import ZERO, Vector, axpy, dot, norm, scale, sub
@@ -34,6 +35,7 @@ class Leg(NamedTuple):
     bearing: float  # μ_B
     bearing_slip: float  # v_b, m/s
     joint_damping: float  # N s/m in sliding joints, N m s/rad in turning ones
+    term: StrutTerm = StrutTerm()  # generic, null
 
 
 class Crush(NamedTuple):
@@ -122,7 +124,29 @@ def strut_loads(leg: Leg, at: Shape, crush: Crush) -> Loads:
         crush.left_tension,
         crush.left_compression,
     )
+    if leg.term.coefficient != 0.0:
+        return with_term(leg, at, Loads(primary, right, left))
     return Loads(primary, right, left)
+
+
+@jit
+def with_term(leg: Leg, at: Shape, own: Loads) -> Loads:
+    """The struts' own loads with the generic term in those that it is meant for."""
+    g, term = leg.geometry, leg.term
+    primary, right, left = own.primary, own.right, own.left
+    if term.struts != SECONDARIES:
+        primary = with_force(primary, term, g.length - at.length, -at.stretch)
+    if term.struts != PRIMARIES:
+        right = with_force(right, term, at.right_length - g.right_length, dot(at.right, at.joint_velocity))
+        left = with_force(left, term, at.left_length - g.left_length, dot(at.left, at.joint_velocity))
+    return Loads(primary, right, left)
+
+
+@jit
+def with_force(own: Tangent, term: StrutTerm, stroke: float, rate: float) -> Tangent:
+    """A strut's load with the generic term at its stroke (m) and rate (m/s)."""
+    more = strut_term(term, stroke, rate)
+    return Tangent(own.force + more.force, own.stiffness + more.stiffness, own.damping + more.damping)
 
 
 @jit

@@ -67,6 +67,12 @@ def leg_geometry(dimensions: GearDimensions, azimuth: float, origin_height: floa
     return LegGeometry(upper, right, left, pad, length, length - g.connection, length - stroke_limit, sides[0], sides[1])
 
 
+def moved(leg: LegGeometry, y: float, z: float) -> LegGeometry:
+    """The leg of a vehicle whose centre of mass, B's origin, stands (y, z) (m) from its axis: the joints move by minus that."""
+    away = (0.0, -y, -z)
+    return leg._replace(upper=add(leg.upper, away), right=add(leg.right, away), left=add(leg.left, away), pad=add(leg.pad, away))
+
+
 def check_dimensions(g: GearDimensions) -> None:
     """Raise GeometryError unless every dimension is positive and the upper joint stands above the footpad."""
     for name, value in g._asdict().items():

@@ -172,7 +172,8 @@ def friction_bend(soil: Soil, speed: float, k: float) -> float:
     """k'/(k v), s2/m2: how Coulomb's scale k follows the slip's speed v; 0 without friction."""
     if soil.effects.stribeck_rise > 0.0:
         rise, slope = stribeck(soil.effects, speed)
-        return slope / (soil.friction + rise) - 1.0 / (speed * speed + soil.slip_velocity * soil.slip_velocity)
+        mu = soil.friction + rise
+        return (slope / mu if mu > 0.0 else 0.0) - 1.0 / (speed * speed + soil.slip_velocity * soil.slip_velocity)
     return -((k / soil.friction) ** 2) if soil.friction > 0.0 else 0.0
 
 

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..laws.generic_terms import AGAINST_MOTION, ALWAYS, StrutTerm
 from ..laws.honeycomb import DATUM_WEIGHT, Core, Stop, brake_damping
 from ..laws.leg import Leg, disc_inertia
 from ..laws.leg_exchange import BOTTOMED, GAVE_UP, advance_leg, start_leg
-from ..laws.leg_geometry import GearDimensions, GeometryError, LegGeometry, leg_geometry
+from ..laws.leg_geometry import GearDimensions, LegGeometry, leg_geometry, moved
 from ..shell import Unit, UnitError, input_, output, parameter, state
 
 Array = NDArray[np.float64]
@@ -20,6 +21,17 @@ TWIST = (*POSE, "body.velocity", "body.angular_velocity")
 MOTION = (*TWIST, "body.acceleration", "body.angular_acceleration")
 GROUND = (*POSE, "pad.contact_stiffness", "pad.contact_damping")
 LOADED = (*MOTION, "pad.force", "pad.force_added")
+
+
+EFFECTS = (  # beyond the paper (decision 9); null unless set
+    parameter("cg_offset", (0.0, 0.0), "m", "Y and Z of the centre of mass from the vehicle's axis, frame B", minimum=-1.0, maximum=1.0),
+    parameter("rate_hardening", 0.0, "s/m", "k: crush loads times 1 + k times the crushing rate", minimum=0.0),
+    parameter("strut_term", 0.0, "N", "generic: F += c (stroke/0.01 m)^a (rate/0.1 m/s)^b"),
+    parameter("strut_term_stroke", 0.0, "1", "a", minimum=0.0, maximum=6.0),
+    parameter("strut_term_rate", 0.0, "1", "b", minimum=0.0, maximum=6.0),
+    parameter("strut_term_phase", 0, "1", "0: against the stroke, 3: against the motion", integer=True, minimum=0, maximum=3),
+    parameter("strut_term_struts", 0, "1", "0: all, 1: primaries, 2: secondaries", integer=True, minimum=0, maximum=2),
+)
 
 
 class GearLeg(Unit):
@@ -73,6 +85,7 @@ class GearLeg(Unit):
         parameter("joint_damping", 100.0, "N.s/m", "of every joint; N.m.s/rad where it turns", minimum=0.0),
         parameter("stop_stiffness", 4e7, "N/m", "of the end stops: that of the stiffest core, F/s", minimum=1.0),
         parameter("stop_damping", 6e4, "N.s/m", "of the end stops: critical for piston and pad", minimum=0.0),
+        *EFFECTS,
         parameter("longest_substep", 5e-4, "s", "of the integrator inside the leg", minimum=1e-7),
         parameter("stroke_rate_start", 0.0, "m/s", "compression rate of the primary at the start, for drop tests"),
         input_("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
@@ -189,8 +202,8 @@ class GearLeg(Unit):
                     f"expects less than {strut}_limit, {self.value(f'{strut}_limit'):g} m"
                 )
         try:
-            geometry_of(self, self.value("azimuth"))
-        except GeometryError as error:
+            leg_of(self, self.value("azimuth"), self.value("vehicle_mass"))
+        except ValueError as error:
             yield str(error)
 
     def prepare(self) -> None:
@@ -227,7 +240,18 @@ class GearLeg(Unit):
 def geometry_of(unit: Unit, azimuth: float) -> LegGeometry:
     """The undeformed leg from a unit's parameters; GeometryError where it cannot close."""
     dimensions = GearDimensions(**{name: unit.value(name) for name in GearDimensions._fields})
-    return leg_geometry(dimensions, azimuth, unit.value("origin_height"), unit.value("primary_limit"))
+    leg = leg_geometry(dimensions, azimuth, unit.value("origin_height"), unit.value("primary_limit"))
+    y, z = unit["cg_offset"].tolist()
+    return moved(leg, y, z) if y != 0.0 or z != 0.0 else leg
+
+
+def strut_term_of(unit: Unit) -> StrutTerm:
+    """The generic term of the struts; ValueError for a phase that struts do not have."""
+    phase = int(unit.value("strut_term_phase"))
+    if phase not in (ALWAYS, AGAINST_MOTION):
+        raise ValueError(f"strut_term_phase is {phase}, expects {ALWAYS} (against the stroke) or {AGAINST_MOTION} (against the motion)")
+    c, a, b = unit.value("strut_term"), unit.value("strut_term_stroke"), unit.value("strut_term_rate")
+    return StrutTerm(c, a, b, phase, int(unit.value("strut_term_struts")))
 
 
 def core_of(unit: Unit, loads: Array, boundary: float, limit: float, vehicle_mass: float) -> Core:
@@ -235,11 +259,11 @@ def core_of(unit: Unit, loads: Array, boundary: float, limit: float, vehicle_mas
     width = unit.value("transition_width")
     c = brake_damping(unit.value("damping_ratio"), float(loads.max()), width, vehicle_mass)
     weight = 1.0 if unit.value("printed_datum_weight") else DATUM_WEIGHT
-    return Core(float(loads[0]), float(loads[-1]), boundary, limit, width, c, weight)
+    return Core(float(loads[0]), float(loads[-1]), boundary, limit, width, c, weight, unit.value("rate_hardening"))
 
 
 def leg_of(unit: Unit, azimuth: float, vehicle_mass: float) -> Leg:
-    """Everything constant about a leg from a unit's parameters; azimuth in rad, vehicle_mass in kg."""
+    """Everything constant about a leg from a unit's parameters; azimuth in rad, vehicle_mass in kg. ValueError where it cannot be."""
     reach = unit.value("compression_limit")
     return Leg(
         geometry_of(unit, azimuth),
@@ -255,4 +279,5 @@ def leg_of(unit: Unit, azimuth: float, vehicle_mass: float) -> Leg:
         unit.value("bearing_friction"),
         unit.value("bearing_slip_velocity"),
         unit.value("joint_damping"),
+        strut_term_of(unit),
     )
