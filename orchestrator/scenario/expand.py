@@ -91,14 +91,18 @@ def expand(table: ScenarioTable, where: str, overrides: Sequence[str] = ()) -> S
 def _unit_entries(table: ScenarioTable, template: str, where: str) -> list[UnitEntry]:
     unit = table.units[template]
     entries = []
-    for chosen in _choices((template,), table.each, where):
-        name = _fill(template, chosen)
+    for name, chosen in instances(table, template, where):
         values = {
             key: _for_instance(value, chosen, table.each, f"{where}: {name}.{key}") if isinstance(value, dict) else value
             for key, value in unit.parameters.items()
         }
         entries.append(UnitEntry(name, unit.fmu, unit.once, values))
     return entries
+
+
+def instances(table: ScenarioTable, template: str, where: str) -> list[tuple[str, dict[str, tuple[str, int]]]]:
+    """The names a unit's template expands to, each with its instance and number for every key of [each] the template uses."""
+    return [(_fill(template, chosen), chosen) for chosen in _choices((template,), table.each, where)]
 
 
 def _for_instance(value: dict[str, Any], chosen: Mapping[str, tuple[str, int]], each: Each, where: str) -> Any:
