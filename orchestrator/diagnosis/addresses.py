@@ -147,7 +147,7 @@ class Addresses:
 
     def _near(self, address: Address) -> str:
         interface = self.interface(address.place, None, address.name)
-        stems = settable_stems(interface)
+        stems = [it for it in settable_stems(interface) if interface.vectors[it][0].causality == "parameter"]
         lengths = {stem: len(interface.vectors[stem]) for stem in stems}
         if address.element is not None and lengths.get(address.name):
             return f"{address.name} has {lengths[address.name]} elements"

@@ -106,7 +106,7 @@ def _feeds_an_added_unit(addresses: Addresses, connection: Connection) -> bool:
 def _shared(addresses: Addresses) -> str:
     """What the twin has once must agree among the units that have it each."""
     legs, soils, body = addresses.units("gear"), addresses.units("soil"), addresses.units("body")
-    groups = [(("mass", body), ("vehicle_mass", legs)), (("gravity", body), ("gravity", legs))]
+    groups = [(("mass", body), ("vehicle_mass", legs)), (("gravity", body), ("gravity", [*legs, *addresses.units("slosh")]))]
     groups += [((name, legs), (name, soils)) for name in ("footpad_radius", "footpad_height")]
     own = addresses.blueprint.interfaces[legs[0]].of("parameter")
     groups += [((it.name, legs[:1]), (it.name, legs[1:])) for it in own if it.name not in _NOT_IN_TWIN]
