@@ -10,6 +10,7 @@ from .rigid_body import Body, BodyLoad, BodyState, body_energy, body_rate, step_
 from .vectors import Vector, add, apply_transposed, rotation, scale, sub, yaw_pitch_roll
 
 Array = NDArray[np.float64]
+RATES, ENERGY = 3, 12  # places behind the attitude's angles: value, mean, slope of each rate; energies
 WRENCH = 18  # numbers of a port: force, slope, socket, torque, slope, socket
 VALID = 6  # place of `reference_valid` behind the reference's velocity and rate
 
@@ -55,14 +56,23 @@ def changes_of(body: Body, before: BodyState, wrenches: Array, models: Array, re
 
 @jit
 def write_body(body: Body, now: BodyState, out: Array, angles: Array) -> None:
-    """out: position, quaternion, velocity, rate (13 first); angles: attitude, rates, kinetic and potential energy (8)."""
+    """out: position, quaternion, velocity, rate (13 first); angles: attitude, each rate with companions, kinetic and potential energy."""
     put_vector(out, 0, now.position)
     put_quaternion(out, 3, now.attitude)
     put_vector(out, 7, now.velocity)
     put_vector(out, 10, now.rate)
     put_vector(angles, 0, yaw_pitch_roll(now.attitude))
-    put_vector(angles, 3, now.rate)
-    angles[6], angles[7] = body_energy(body, now)
+    for j in range(3):
+        angles[RATES + 3 * j] = now.rate[j]
+    angles[ENERGY], angles[ENERGY + 1] = body_energy(body, now)
+
+
+@jit
+def write_rates(before: Vector, now: Vector, step: float, angles: Array) -> None:
+    """Mean and slope of each rate: those of the straight line through both ends, which a listener follows to the end value exactly."""
+    for j in range(3):
+        angles[RATES + 3 * j + 1] = 0.5 * (before[j] + now[j])
+        angles[RATES + 3 * j + 2] = (now[j] - before[j]) / step
 
 
 @jit
@@ -85,6 +95,7 @@ def advance_body(
     now = step_body(body, before, load, step, longest)
     last = body_rate(body, now, load, step)
     write_body(body, now, out, angles)
+    write_rates(before.rate, now.rate, step, angles)
     write_course(out, 13, before.velocity, now.velocity, first.acceleration, last.acceleration, step)
     write_course(out, 22, before.rate, now.rate, first.spin_up, last.spin_up, step)
     for k in range(wrenches.shape[0]):

@@ -20,6 +20,7 @@ from .leg_joints import ball_torque
 from .leg_reaction import mount_wrench
 from .linear import put, solve_many
 from .rigid_body import Body
+from .slosh import Pendulum, Sway, slosh_wrench
 from .soil import PUBLISHED, Soil
 from .surface import Surface, depth_at, normal_at
 from .vectors import (
@@ -287,21 +288,6 @@ def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, explicit: Array, turns
     )
 
 
-@jit
-def powers(body: BodyAt, legs: Any, force: Vector, torque: Vector) -> Array:
-    """Row 0: the engine's power, W; rows 1..: soil, struts, ball joint of each leg."""
-    r = body.turned
-    power = np.zeros((1 + len(legs), 4))
-    power[0, 0] = dot(force, apply_transposed(r, body.velocity)) + dot(torque, body.rate)
-    for i in range(len(legs)):
-        trial = legs[i]
-        relative = sub(apply_transposed(r, trial.pad.rate), add(body.rate, cross(trial.at.axis, trial.at.swing)))
-        power[1 + i, 0] = pad_power(trial.wrench, trial.pad)
-        power[1 + i, 1] = trial.motion.power
-        power[1 + i, 2] = dot(trial.ball, relative)
-    return power
-
-
 class Trial(NamedTuple):
     """Everything at trial accelerations."""
 
@@ -312,15 +298,35 @@ class Trial(NamedTuple):
     size: float  # of all that is missing, (m/s2)²
 
 
+class Attached(NamedTuple):
+    """Effects on the body at a stage; not looked at where `active` is false."""
+
+    active: bool
+    force: Vector  # N, B
+    torque: Vector  # N m, about B's origin, B
+    pendulum: Pendulum
+    sway: Sway
+
+
 class Stage(NamedTuple):
     """What is given about a stage."""
 
     body: Array  # explicit row
     legs: Array  # explicit rows
     turns: Array  # explicit rotation vectors since the step's start, (n + 1, 3): the body's in B, the pads' in L
-    force: Vector  # from outside on the body, N, B
+    force: Vector  # through the port on the body, N, B
     torque: Vector  # N m, B
     h: float  # s: velocity = explicit + h acceleration
+    attached: Attached
+
+
+@jit
+def attached_wrench(attached: Attached, base: Base) -> tuple[Vector, Vector]:
+    """Force (N) and torque (N m, about B's origin) of the effects, B."""
+    if attached.pendulum.mass == 0.0:
+        return attached.force, attached.torque
+    force, torque = slosh_wrench(attached.pendulum, base, attached.sway)
+    return add(attached.force, force), add(attached.torque, torque)
 
 
 @jit
@@ -331,6 +337,9 @@ def trial_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array) -> Trial:
     body = body_at(quaternion(start.body, QX), given.body, vector(given.turns[0], 0), a[0], gravity, given.h)
     legs = [leg_at(vehicle, start, body, given.legs, given.turns, a, given.h, i) for i in range(n)]
     size, f, m = 0.0, given.force, given.torque
+    if given.attached.active:
+        force, torque = attached_wrench(given.attached, body.base)
+        f, m = add(f, force), add(m, torque)
     for i in range(n):
         trial = legs[i]
         f, m = add(f, trial.force), add(m, trial.torque)
@@ -403,6 +412,25 @@ def newton_step(vehicle: Vehicle, at: Trial, h: float, a: Array, step: Array, wo
 
 
 @jit
+def powers(body: BodyAt, legs: Any, given: Stage) -> Array:
+    """Row 0: power through the port and of the effects on the body, W; rows 1..: soil, struts, ball joint of each leg."""
+    r = body.turned
+    power = np.zeros((1 + len(legs), 4))
+    own = apply_transposed(r, body.velocity)
+    power[0, 0] = dot(given.force, own) + dot(given.torque, body.rate)
+    if given.attached.active:
+        force, torque = attached_wrench(given.attached, body.base)
+        power[0, 1] = dot(force, own) + dot(torque, body.rate)
+    for i in range(len(legs)):
+        trial = legs[i]
+        relative = sub(apply_transposed(r, trial.pad.rate), add(body.rate, cross(trial.at.axis, trial.at.swing)))
+        power[1 + i, 0] = pad_power(trial.wrench, trial.pad)
+        power[1 + i, 1] = trial.motion.power
+        power[1 + i, 2] = dot(trial.ball, relative)
+    return power
+
+
+@jit
 def stage(vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Array, step: Array, work: Work) -> tuple[bool, Array]:
     """Solve one stage for the accelerations a (n + 1, 6), row 0 the body's; they hold the guess on entry.
 
@@ -414,7 +442,7 @@ def stage(vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Arra
         if size < 0.0:
             break
         if given.h * given.h * size < newton.tolerance * newton.tolerance:
-            return True, powers(now.body, now.legs, given.force, given.torque)
+            return True, powers(now.body, now.legs, given)
         now = searched(vehicle, start, given, now, a, step)
     return False, np.zeros((a.shape[0], 4))
 

@@ -3,7 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .base_motion import BaseState
 from .blocks import put_quaternion, put_vector, quaternion, vector
 from .compiled import jit
 from .footpad import DEPTH, POINTS, lever, pad_wrench, slid
@@ -12,21 +11,13 @@ from .leg import Crush, bottomed, shape, strokes, strut_loads
 from .leg_stepping import LegState
 from .rigid_body import BodyState, body_energy
 from .surface import gap_at, normal_at
-from .twin import CRUSH, QX, VX, WX, Flight, P, Q, V, Vehicle, W, X
-from .twin_stepping import BALL, ENGINE, SOIL, STRUTS, pad_motion
+from .twin import CRUSH, Engine, Flight, P, Q, V, Vehicle, W
+from .twin_effects import Effects
+from .twin_stepping import BALL, EFFECTS, ENGINE, SOIL, STRUTS, Progress, Ride, Settings, fly, pad_motion, state_of
 from .vectors import add, apply_transposed, dot, rotation, yaw_pitch_roll
 
 Array = NDArray[np.float64]
 LEG_REPORT = 24  # numbers a leg shows
-
-
-@jit
-def base_state(f: Flight, a: Array, gravity: float) -> BaseState:
-    """The body frame; a (6): pull and angular acceleration in L."""
-    q = quaternion(f.body, QX)
-    acceleration = add(vector(a, 0), (-gravity, 0.0, 0.0))
-    spin_up = apply_transposed(rotation(q), vector(a, 3))
-    return BaseState(vector(f.body, X), q, vector(f.body, VX), vector(f.body, WX), acceleration, spin_up)
 
 
 @jit
@@ -42,7 +33,7 @@ def leg_state(f: Flight, i: int) -> LegState:
 def show_body(vehicle: Vehicle, f: Flight, a: Array, body: Array, energy: Array) -> None:
     """body: position, quaternion, velocity, rate, acceleration, angular acceleration, attitude angles, rates (25); energy: kinetic,
     potential of the whole vehicle."""
-    base = base_state(f, a[0], vehicle.body.gravity)
+    base = state_of(f, a[0], vehicle.body.gravity)
     put_vector(body, 0, base.position)
     put_quaternion(body, 3, base.attitude)
     put_vector(body, 7, base.velocity)
@@ -92,8 +83,28 @@ def show_leg(vehicle: Vehicle, f: Flight, ledger: Array, touch: Array, i: int, o
 
 @jit
 def show(vehicle: Vehicle, f: Flight, a: Array, ledger: Array, touch: Array, body: Array, energy: Array, legs: Array) -> None:
-    """Everything the twin shows. energy: kinetic, potential, work of the engine; legs: (n, LEG_REPORT)."""
+    """Everything the twin shows. energy: kinetic, potential, work through the port, of the effects; legs: (n, LEG_REPORT)."""
     show_body(vehicle, f, a, body, energy)
-    energy[2] = ledger[0, ENGINE]
+    energy[2], energy[3] = ledger[0, ENGINE], ledger[0, EFFECTS]
     for i in range(len(vehicle.legs)):
         show_leg(vehicle, f, ledger, touch, i, legs[i])
+
+
+@jit
+def fly_and_show(
+    vehicle: Vehicle,
+    effects: Effects,
+    engine: Engine,
+    settings: Settings,
+    ride: Ride,
+    time: float,
+    interval: float,
+    body: Array,
+    energy: Array,
+    legs: Array,
+) -> Progress:
+    """An interval and what the twin shows after it, in one call."""
+    done = fly(vehicle, effects, engine, settings, ride, time, interval)
+    if done.ok:
+        show(vehicle, ride.flight, ride.a, ride.ledger, ride.touch, body, energy, legs)
+    return done

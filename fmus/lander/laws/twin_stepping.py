@@ -5,22 +5,46 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .base_motion import BaseState, as_base
 from .blocks import put_quaternion, put_vector, quaternion, vector
 from .compiled import jit
 from .footpad import PadMotion, deepest, remember, start_memory
 from .leg import Crush, crushed
 from .leg_stepping import GAMMA, start_state
 from .rigid_body import BodyState
-from .twin import BODY_COLUMNS, CRUSH, LEG_COLUMNS, QX, VX, WX, Engine, Flight, Newton, P, Q, Stage, V, Vehicle, W, X, scratch, stage
-from .vectors import add, apply, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation
+from .slosh import Pendulum, Sway, sway_acceleration, swayed
+from .twin import (
+    BODY_COLUMNS,
+    CRUSH,
+    LEG_COLUMNS,
+    QX,
+    VX,
+    WX,
+    Attached,
+    Engine,
+    Flight,
+    Newton,
+    P,
+    Q,
+    Stage,
+    V,
+    Vehicle,
+    W,
+    X,
+    scratch,
+    stage,
+)
+from .twin_effects import Effects, Outside, first_touch, guided, next_corner, no_effects, outside_wrench, within
+from .vectors import ZERO, add, apply, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation
 
 Array = NDArray[np.float64]
 ERROR_CONSTANT = 0.0404  # of SDIRK2: 3 γ² - 2 γ³ - 1/6
 SMALLEST = 1e-9  # s
+LOCATED = 1e-5  # s: how near after the first contact a step ends, for an engine inside to act on it
 TIGHTEST = 1e-10  # m/s, of Newton
 NEWTON_STEPS = 12  # before a step is refused
 EXACT = Newton(TIGHTEST, 40)
-ENGINE = 0  # column of the ledger in row 0, the body's
+ENGINE, EFFECTS = 0, 1  # columns of the ledger in row 0, the body's
 SOIL, STRUTS, BALL = range(3)  # columns in the rows of the legs
 
 
@@ -154,10 +178,38 @@ def local_error(before: Array, one: Array, two: Array, h: float) -> float:
 
 
 @jit
-def stage_of(explicit: Flight, turns: Array, engine: Engine, t: float, h: float) -> Stage:
+def stage_of(explicit: Flight, turns: Array, engine: Engine, t: float, h: float, attached: Attached) -> Stage:
     """A stage at a time t after the start of the interval."""
     force, torque = axpy(t, engine.force_slope, engine.force), axpy(t, engine.torque_slope, engine.torque)
-    return Stage(explicit.body, explicit.legs, turns, force, torque, h)
+    return Stage(explicit.body, explicit.legs, turns, force, torque, h, attached)
+
+
+@jit
+def nothing_attached() -> Attached:
+    """No effects."""
+    return Attached(False, ZERO, ZERO, Pendulum(0.0, 1.0, 0.0, ZERO), Sway(ZERO, ZERO))
+
+
+@jit
+def attached_at(effects: Effects, outside: Outside, share: float, sway: Sway) -> Attached:
+    """The effects at a share of a step."""
+    force, torque = within(outside, share)
+    return Attached(effects.active, force, torque, effects.pendulum, sway)
+
+
+@jit
+def state_of(f: Flight, a: Array, gravity: float) -> BaseState:
+    """The body frame; a (6): pull and angular acceleration in L."""
+    q = quaternion(f.body, QX)
+    acceleration = add(vector(a, 0), (-gravity, 0.0, 0.0))
+    spin_up = apply_transposed(rotation(q), vector(a, 3))
+    return BaseState(vector(f.body, X), q, vector(f.body, VX), vector(f.body, WX), acceleration, spin_up)
+
+
+@jit
+def sway_of(bob: Array) -> Sway:
+    """The pendulum's row: place and velocity across X, (4,)."""
+    return Sway((0.0, bob[0], bob[1]), (0.0, bob[2], bob[3]))
 
 
 @jit
@@ -166,35 +218,58 @@ def newton_of(tolerance: float) -> Newton:
     return Newton(max(TIGHTEST, 3.0 * tolerance * tolerance), NEWTON_STEPS)
 
 
+class Ride(NamedTuple):
+    """What changes in place over an interval."""
+
+    flight: Flight
+    a: Array  # accelerations, (n + 1, 6): kept up to date, where Newton and the error estimate start
+    ledger: Array  # (n + 1, 4) energies, J: row 0 port, effects; rows 1.. soil, struts, ball joint: integrals of the powers
+    touch: Array  # (n,) instants of first contact, s; -1 before
+    bob: Array  # (4,) of the slosh pendulum
+
+
 @jit
 def integrate(
     vehicle: Vehicle, engine: Engine, settings: Settings, f: Flight, a: Array, ledger: Array, touch: Array, time: float, interval: float
 ) -> Progress:
-    """Take f over `interval` (s) from `time`, in place.
+    """`fly` without effects on the body."""
+    return fly(vehicle, no_effects(), engine, settings, Ride(f, a, ledger, touch, np.zeros(4)), time, interval)
 
-    a       accelerations at the start, (n + 1, 6): kept up to date, where Newton and the error estimate start
-    ledger  (n + 1, 4) energies, J: row 0 engine; rows 1.. soil, struts, ball joint: integrals of the powers
-    touch   (n,) instants of first contact
-    """
+
+@jit
+def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, ride: Ride, time: float, interval: float) -> Progress:
+    """Take the ride over `interval` (s) from `time`, in place."""
+    f, a, ledger, touch, bob = ride
     n = len(vehicle.legs)
     work, newton = scratch(n), newton_of(settings.tolerance)
-    turns = np.zeros((n + 1, 3))
-    delta = np.zeros((n + 1, 6))
+    turns, delta = np.zeros((n + 1, 3)), np.zeros((n + 1, 6))
     t, h = 0.0, min(settings.first, settings.longest)
     steps, rejected = 0, 0
+    locating = effects.active and guided(effects.tail)
+    early, late, sway = nothing_attached(), nothing_attached(), sway_of(bob)
     while interval - t > 1e-12:
         left = interval - t
+        contact = first_touch(touch)
+        if effects.active:
+            left = min(left, next_corner(effects, contact, time + t, time + interval) - (time + t))
         h = left if h > 0.999 * left else (0.5 * left if h > 0.5 * left else h)
         g = GAMMA * h
+        if effects.active:
+            now = state_of(f, a[0], vehicle.body.gravity)
+            ported = engine.force[0] + t * engine.force_slope[0]
+            outside = outside_wrench(effects, now, contact, time + t, h, (ported, ported + h * engine.force_slope[0]))
+            swaying = sway_acceleration(effects.pendulum, as_base(now, vehicle.body.gravity), sway)
+            early = attached_at(effects, outside, GAMMA, swayed(sway, swaying, g))
+            late = attached_at(effects, outside, 1.0, swayed(sway, swaying, h))
         begin = explicit_part(vehicle, f, 0.0, a, f, turns)
         one = a.copy()
-        ok, power_1 = stage(vehicle, newton, f, stage_of(begin, turns, engine, t + g, g), one, delta, work)
+        ok, power_1 = stage(vehicle, newton, f, stage_of(begin, turns, engine, t + g, g, early), one, delta, work)
         middle = stage_state(vehicle, f, begin, turns, one, g)
         between = explicit_part(vehicle, f, h - g, one, middle, turns)
         two = one.copy()
         error = 1e300
         if ok:
-            ok, power_2 = stage(vehicle, newton, f, stage_of(between, turns, engine, t + h, g), two, delta, work)
+            ok, power_2 = stage(vehicle, newton, f, stage_of(between, turns, engine, t + h, g, late), two, delta, work)
             error = local_error(a, one, two, h) if ok else 1e300
         if error > settings.tolerance and h > SMALLEST:
             rejected += 1
@@ -203,15 +278,44 @@ def integrate(
         if not ok:
             return Progress(False, h, steps, rejected)
         end = stage_state(vehicle, f, between, turns, two, g)
-        latch(vehicle, end, touch, time + t, h)
+        seen = touch.copy()
+        latch(vehicle, end, seen, time + t, h)
+        if locating and contact < 0.0 and first_touch(seen) >= 0.0 and time + t + h - first_touch(seen) > LOCATED:
+            rejected += 1
+            h = first_touch(seen) - (time + t) + 0.5 * LOCATED
+            continue
+        if effects.active and effects.pendulum.mass != 0.0:
+            sway = carried_on(vehicle, effects.pendulum, sway, early, late, middle, end, one, two, h)
+            bob[0], bob[1], bob[2], bob[3] = sway.place[1], sway.place[2], sway.velocity[1], sway.velocity[2]
         f.body[:], f.legs[:, :], f.memory[:, :, :] = end.body, end.legs, end.memory
-        a[:, :] = two
+        a[:, :], touch[:] = two, seen
         ledger += (h - g) * power_1 + g * power_2
         t += h
         steps += 1
         grown = 0.9 * (settings.tolerance / max(error, 1e-300)) ** (1.0 / 3.0)
         h = min(settings.longest, h * min(2.0, max(0.2, grown)))
     return Progress(True, h, steps, rejected)
+
+
+@jit
+def carried_on(
+    vehicle: Vehicle,
+    pendulum: Pendulum,
+    sway: Sway,
+    early: Attached,
+    late: Attached,
+    middle: Flight,
+    end: Flight,
+    one: Array,
+    two: Array,
+    h: float,
+) -> Sway:
+    """The sway after a step, by the weights of its stages: momentum goes over to the body exactly."""
+    gravity, g = vehicle.body.gravity, GAMMA * h
+    first = sway_acceleration(pendulum, as_base(state_of(middle, one[0], gravity), gravity), early.sway)
+    last = sway_acceleration(pendulum, as_base(state_of(end, two[0], gravity), gravity), late.sway)
+    velocity = axpy(h - g, first, axpy(g, last, sway.velocity))
+    return Sway(axpy(h - g, early.sway.velocity, axpy(g, late.sway.velocity, sway.place)), velocity)
 
 
 @jit
@@ -244,10 +348,20 @@ def start_accelerations(vehicle: Vehicle, engine: Engine, f: Flight, a: Array) -
     a[:, :] = 0.0
     step, turns, work = np.zeros((n + 1, 6)), np.zeros((n + 1, 3)), scratch(n)
     for _ in range(50):
-        ok, _power = stage(vehicle, EXACT, f, stage_of(f, turns, engine, 0.0, 1e-12), a, step, work)
+        ok, _power = stage(vehicle, EXACT, f, stage_of(f, turns, engine, 0.0, 1e-12, nothing_attached()), a, step, work)
         if not ok or np.abs(step).max() < 1e-9:  # m/s2, rad/s2
             return ok
     return True
+
+
+@jit
+def push_at_start(effects: Effects, engine: Engine, f: Flight, time: float) -> Engine:
+    """The port's wrench with that of the effects at the start of a run."""
+    if not effects.active:
+        return engine
+    state = BaseState(vector(f.body, X), quaternion(f.body, QX), vector(f.body, VX), vector(f.body, WX), ZERO, ZERO)
+    outside = outside_wrench(effects, state, -1.0, time, 1e-9, (engine.force[0], engine.force[0]))
+    return Engine(add(engine.force, outside.force), add(engine.torque, outside.torque), engine.force_slope, engine.torque_slope)
 
 
 def empty_flight(n: int) -> Flight:
@@ -255,4 +369,4 @@ def empty_flight(n: int) -> Flight:
     return Flight(np.zeros(BODY_COLUMNS), np.zeros((n, LEG_COLUMNS)), np.zeros((n, 5, 8)))
 
 
-__all__ = ["Settings", "empty_flight", "integrate", "start_accelerations", "start_flight"]
+__all__ = ["Ride", "Settings", "empty_flight", "fly", "integrate", "push_at_start", "start_accelerations", "start_flight"]

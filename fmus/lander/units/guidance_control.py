@@ -12,16 +12,31 @@ CONTACTS = range(1, 9)
 POINTS = 8
 
 
+def corners_of(unit: Unit, prefix: str = "") -> Any:
+    """The corners of the law of thrust."""
+    start, decay = unit.value(prefix + "thrust_start"), unit.value(prefix + "decay_time")
+    return thrust_points(start, decay, unit[prefix + "table_time"], unit[prefix + "table_thrust"], int(unit.value(prefix + "table_points")))
+
+
+def falling_times(unit: Unit, prefix: str = "") -> Iterable[str]:
+    """What is wrong with the table of thrust, a line each."""
+    times = unit[prefix + "table_time"][: int(unit.value(prefix + "table_points"))]
+    for i in np.flatnonzero(np.diff(times) <= 0.0):
+        name = f"{prefix}table_time"
+        yield f"{name}[{i + 2}] is {times[i + 1]} s, expects more than {name}[{i + 1}], {times[i]} s"
+
+
 class GuidanceControl(Unit):
     """Thrust along the body's X axis as a function of time since the first contact of any pad or probe.
 
     before contact   T = thrust_before_contact
     after it         T = thrust_start max(0, 1 - τ/decay_time), or a table of up to eight points, zero after its last
 
-    A contact is seen at the start of the interval in which its signal is set: τ = 0 there. The force acts along +X of
-    frame B through the line of thrust at thrust_offset, the torque is about the origin of B. engine.force_mean is exact
-    (the law is piecewise linear in time), force_slope is the slope of the nearest straight line over the interval, force the
-    value at its end. next_event_time is the next corner of the law after the interval. Attitude, rates, position and velocity are
+    A contact is seen at the start of the interval in which its signal is set: τ = 0 there. The force acts along +X of frame B through
+    the line of thrust at thrust_offset; the torque is about the origin of B, about X it is the jet's swirl times thrust.
+    engine.force_mean is exact (the law is piecewise linear in time), force_slope is the slope of the nearest straight line over the
+    interval, force the value at its end. next_event_time is the next corner of the law after the interval. Attitude, rates, position and
+    velocity are
     taken for the sake of the port's contract, and not used.
     """
 
@@ -34,6 +49,7 @@ class GuidanceControl(Unit):
         parameter("decay_time", 0.0, "s", "time from first contact to zero thrust, 0: at once", minimum=0.0),
         parameter("thrust_before_contact", 0.0, "N", "thrust until first contact", minimum=0.0),
         parameter("thrust_offset", (0.0, 0.0), "m", "Y and Z of the line of thrust in frame B"),
+        parameter("swirl", 0.0, "m", "torque about X by thrust"),
         *(input_(f"attitude.{a}", 0.0, "rad", f"{a} angle", nominal=1.0) for a in ("yaw", "pitch", "roll")),
         *(input_(f"rates.{a}", 0.0, "rad/s", f"{a} rate, frame B", nominal=0.1) for a in ("yaw", "pitch", "roll")),
         input_("body.position", (0.0, 0.0, 0.0), "m", "origin of B, frame L", nominal=1.0),
@@ -57,9 +73,9 @@ class GuidanceControl(Unit):
             nominal=1e4,
             mean=True,
             slope=True,
-            initially=("thrust_before_contact", "thrust_offset"),
+            initially=("thrust_before_contact", "thrust_offset", "swirl"),
         ),
-        output("engine.thrust", 0.0, "N", "thrust along +X of B", nominal=1e4, initially=("thrust_before_contact",)),
+        output("engine.thrust", 0.0, "N", "thrust along +X of B", nominal=1e4, mean=True, slope=True, initially=("thrust_before_contact",)),
         output("engine.on", False, "", "whether there is thrust", boolean=True, initially=("thrust_before_contact",)),
         output("next_event_time", -1.0, "s", "next corner of the law of thrust, -1: none", nominal=1.0, initially=()),
         state("contact_time", -1.0, "time of first contact"),
@@ -74,14 +90,10 @@ class GuidanceControl(Unit):
         return {"contact2": float(time >= 0.25), "contact4": float(time >= 0.4)}
 
     def prepare(self) -> None:
-        self.corners: Any = thrust_points(
-            self.value("thrust_start"), self.value("decay_time"), self["table_time"], self["table_thrust"], int(self.value("table_points"))
-        )
+        self.corners = corners_of(self)
 
     def check(self) -> Iterable[str]:
-        times = self["table_time"][: int(self.value("table_points"))]
-        for i in np.flatnonzero(np.diff(times) <= 0.0):
-            yield f"table_time[{i + 2}] is {times[i + 1]} s, expects more than table_time[{i + 1}], {times[i]} s"
+        return falling_times(self)
 
     def initialise(self) -> None:
         before = self.value("thrust_before_contact")
@@ -103,9 +115,10 @@ class GuidanceControl(Unit):
         return next((instant for instant in instants if nanoseconds(instant) > now), -1.0)
 
     def show(self, end: float, mean: float, slope: float) -> None:
-        """Fill the outputs: force along X, torque r × F of the offset line of thrust."""
-        y, z = self["thrust_offset"]
+        """Fill the outputs: force along X, torque r × F of the offset line of thrust and of the jet's swirl."""
+        (y, z), swirl = self["thrust_offset"], self.value("swirl")
         for suffix, value in (("", end), ("_mean", mean), ("_slope", slope)):
             self["engine.force" + suffix] = (value, 0.0, 0.0)
-            self["engine.torque" + suffix] = (0.0, z * value, 0.0 - y * value)
-        self["engine.thrust"], self["engine.on"] = end, float(end > 0.0)
+            self["engine.torque" + suffix] = (swirl * value, z * value, 0.0 - y * value)
+            self["engine.thrust" + suffix] = value
+        self["engine.on"] = float(end > 0.0)

@@ -11,12 +11,22 @@ from numpy.typing import NDArray
 from ..laws.footpad import COLUMNS, POINTS, Footpad, deepest
 from ..laws.rigid_body import Body, BodyState, inertia_matrix
 from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Engine, Flight, Vehicle
-from ..laws.twin_exchange import LEG_REPORT, show
-from ..laws.twin_stepping import Settings, integrate, start_accelerations, start_flight
+from ..laws.twin_effects import Effects, Tail, guided
+from ..laws.twin_exchange import LEG_REPORT, fly_and_show, show
+from ..laws.twin_stepping import Ride, Settings, push_at_start, start_accelerations, start_flight
 from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation
 from ..shell import Unit, UnitError, input_, output, parameter, state
 from ..shell.records import Record
-from . import gear_leg, regolith_contact, vehicle_body
+from . import (
+    body_term,
+    gear_leg,
+    guidance_control,
+    propellant_slosh,
+    reaction_control,
+    regolith_contact,
+    thrust_ground_effect,
+    vehicle_body,
+)
 
 LEGS = 4
 Array = NDArray[np.float64]
@@ -31,6 +41,11 @@ def parameters_of(variables: Iterable[Record], without: Iterable[str]) -> tuple[
 def for_each_soil(record: Record) -> Record:
     """A soil's parameter once for each leg: `soil.friction[1..4]`; vectors by rows."""
     return replace(record, name=f"soil.{record.name}", start=record.start * LEGS, vector=True)
+
+
+def named(prefix: str, unit: type[Unit], *without: str) -> tuple[Record, ...]:
+    """The parameters of another unit under a prefix: `guidance.decay_time`."""
+    return tuple(replace(record, name=f"{prefix}.{record.name}") for record in parameters_of(unit.variables, without))
 
 
 def leg_outputs(k: int) -> tuple[Record, ...]:
@@ -64,6 +79,9 @@ class LunarLander(Unit):
     follows
     the local error of the velocities (`tolerance`, m/s a step). It shares the laws with the units, not the coupling: the co-simulation
     must equal it.
+    Inside are also, by default without effect: the engine of GuidanceControl (`guidance.*`), which acts from the twin's own first contact,
+    and ThrustGroundEffect, PropellantSlosh, ReactionControl and BodyTerm (`plume.*`, `slosh.*`, `rcs.*`, `body_term.*`). The port `engine`
+    adds to them; thrust that others follow is that inside plus the port's force along X.
     Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg). Parameters are those of VehicleBody,
     GearLeg and RegolithContact.
     """
@@ -78,6 +96,11 @@ class LunarLander(Unit):
             for_each_soil(record)
             for record in parameters_of(regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep"))
         ),
+        *named("guidance", guidance_control.GuidanceControl),
+        *named("plume", thrust_ground_effect.ThrustGroundEffect),
+        *named("slosh", propellant_slosh.PropellantSlosh, "gravity"),
+        *named("rcs", reaction_control.ReactionControl),
+        *named("body_term", body_term.BodyTerm),
         parameter("tolerance", 1e-5, "m/s", "local error of any velocity a step", minimum=1e-9, maximum=1e-2),
         parameter("longest_step", 1e-2, "s", "of the integrator", minimum=1e-6),
         input_("engine.force", (0.0, 0.0, 0.0), "N", "on the body, frame B", nominal=1e4, slope=True, added=True),
@@ -93,6 +116,7 @@ class LunarLander(Unit):
         output("energy.kinetic", 0.0, "J", "of the whole vehicle", nominal=1e3),
         output("energy.potential", 0.0, "J", "of the whole vehicle, zero at the origin of L", nominal=1e3),
         output("engine.work", 0.0, "J", "done on the body through this port since the start", nominal=1e3),
+        output("effects.work", 0.0, "J", "done on the body by engine and effects inside since the start", nominal=1e3),
         *(record for k in range(1, LEGS + 1) for record in leg_outputs(k)),
         output("steps", 0.0, "1", "integration steps so far", nominal=1e3),
         output("rejected", 0.0, "1", "integration steps refused so far", nominal=1e3),
@@ -102,6 +126,7 @@ class LunarLander(Unit):
         state("accelerations", (0.0,) * ((LEGS + 1) * 6)),
         state("ledger", (0.0,) * ((LEGS + 1) * 4)),
         state("touch", (-1.0,) * LEGS),
+        state("bob", (0.0,) * 4, "of the slosh pendulum: place and velocity across X"),
         state("next_step", 1e-5),
     )
 
@@ -118,6 +143,7 @@ class LunarLander(Unit):
             self.prepare()
         except ValueError as error:
             yield str(error)
+        yield from guidance_control.falling_times(self, "guidance.")
 
     def prepare(self) -> None:
         body = Body(self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity"))
@@ -132,9 +158,12 @@ class LunarLander(Unit):
             self["flight.memory"].reshape(LEGS, POINTS, COLUMNS),
         )
         self.course = self["accelerations"].reshape(LEGS + 1, 6), self["ledger"].reshape(LEGS + 1, 4), self["touch"]
+        self.ride = Ride(self.flight, *self.course, self["bob"])
+        self.effects = effects_of(self)
+        self.settings = Settings(self.value("tolerance"), self.value("longest_step"), 0.0)
         self.outputs = (
             self.span("body.position", "rates.roll"),
-            self.span("energy.kinetic", "engine.work"),
+            self.span("energy.kinetic", "effects.work"),
             self.span("leg1.pad.position", f"soil{LEGS}.contact_time").reshape(LEGS, LEG_REPORT),
         )
 
@@ -150,19 +179,30 @@ class LunarLander(Unit):
         start_flight(self.vehicle, BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"])), self.flight)
         for k in range(LEGS):
             regolith_contact.refuse_deep(deepest(self.flight.memory[k]), f"pad {k + 1}")
-        if not start_accelerations(self.vehicle, self.engine(), self.flight, self.course[0]):
+        engine = push_at_start(self.effects, self.engine(), self.flight, self.start_time)
+        if not start_accelerations(self.vehicle, engine, self.flight, self.course[0]):
             raise UnitError("the accelerations at the start could not be found; check the start position against the ground")
         show(self.vehicle, self.flight, *self.course, *self.outputs)
 
     def advance(self, time: float, step: float) -> None:
-        settings = Settings(self.value("tolerance"), self.value("longest_step"), self.value("next_step"))
-        done = integrate(self.vehicle, self.engine(), settings, self.flight, *self.course, time, step)
+        settings = self.settings._replace(first=self.value("next_step"))
+        done = fly_and_show(self.vehicle, self.effects, self.engine(), settings, self.ride, time, step, *self.outputs)
         if not done.ok:
             raise UnitError(f"the equations did not converge over a step of {done.next_step:.3g} s; a larger tolerance may do")
         self["next_step"] = done.next_step
         self["steps"] += done.steps
         self["rejected"] += done.rejected
-        show(self.vehicle, self.flight, *self.course, *self.outputs)
+
+
+def effects_of(unit: Unit) -> Effects:
+    """Engine and effects inside; active where any is not null."""
+    corners = guidance_control.corners_of(unit, "guidance.")
+    y, z = unit["guidance.thrust_offset"].tolist()
+    tail = Tail(corners, unit.value("guidance.thrust_before_contact"), (y, z), unit.value("guidance.swirl"))
+    plume, pendulum = thrust_ground_effect.plume_of(unit, "plume."), propellant_slosh.pendulum_of(unit, "slosh.")
+    pulse, term = reaction_control.pulse_of(unit, "rcs."), body_term.term_of(unit, "body_term.")
+    active = guided(tail) or plume.share != 0.0 or pendulum.mass != 0.0 or any(pulse.torque) or term.coefficient != 0.0
+    return Effects(active, tail, plume, pendulum, pulse, term, unit.start_time)
 
 
 def triple(view: Array) -> Vector:

@@ -2,6 +2,8 @@
 
 from math import exp, floor
 
+import numpy as np
+
 from ..shell import Unit, input_, nanoseconds, output, parameter, state
 
 AXES = ("yaw", "pitch", "roll")
@@ -11,7 +13,7 @@ class RateSensor(Unit):
     """Lag, bias, scale, sampling and quantisation of three rates, in this order.
 
     τ dy/dt = u - y              first-order lag, exact for an input that is linear over the interval; τ = 0: y = u
-    z = scale y + bias
+    z = scale (y + φ x y) + bias         φ: the sensor's small rotation against B
     sampled at t0, t0 + Δ, t0 + 2Δ, ... and held; Δ = 0: not sampled. The instants are counted in nanoseconds.
     telemetry = q round(z / q), half upwards; q = 0: not quantised
 
@@ -26,6 +28,7 @@ class RateSensor(Unit):
         parameter("quantum", 0.0, "rad/s", "step of the quantised rate, 0: none", minimum=0.0),
         parameter("bias", (0.0, 0.0, 0.0), "rad/s", "added to yaw, pitch, roll rate"),
         parameter("scale", 1.0, "1", "factor on all rates"),
+        parameter("misalignment", (0.0, 0.0, 0.0), "rad", "small rotation of the sensor about X, Y, Z of B"),
         *(input_(f"rates.{axis}", 0.0, "rad/s", f"true {axis} rate, frame B", nominal=0.1, slope=True) for axis in AXES),
         *(
             output(
@@ -34,7 +37,7 @@ class RateSensor(Unit):
                 "rad/s",
                 f"received {axis} rate",
                 nominal=0.1,
-                initially=(f"rates.{axis}", "bias", "scale", "quantum"),
+                initially=(*(f"rates.{a}" for a in AXES), "bias", "scale", "misalignment", "quantum"),
             )
             for axis in AXES
         ),
@@ -96,7 +99,9 @@ class RateSensor(Unit):
 
     def show(self) -> None:
         """Fill the outputs from the held samples."""
-        scale, quantum = self.value("scale"), self.value("quantum")
+        scale, quantum, held = self.value("scale"), self.value("quantum"), self["held"]
+        if self["misalignment"].any():
+            held = held + np.cross(self["misalignment"], held)
         for i, axis in enumerate(AXES):
-            z = scale * self["held"][i] + self["bias"][i]
+            z = scale * held[i] + self["bias"][i]
             self[f"telemetry.{axis}"] = quantum * floor(z / quantum + 0.5) if quantum > 0.0 else z

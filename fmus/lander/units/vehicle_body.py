@@ -79,7 +79,7 @@ class VehicleBody(Unit):
         output("body.acceleration", (0.0, 0.0, 0.0), "m/s2", "of the origin of B, frame L", nominal=1.0, mean=True, slope=True),
         output("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, mean=True, slope=True),
         *(output(f"attitude.{a}", 0.0, "rad", f"{a} angle, 321 sequence", nominal=1.0) for a in ("yaw", "pitch", "roll")),
-        *(output(f"rates.{a}", 0.0, "rad/s", f"{a} rate, frame B", nominal=0.1) for a in ("yaw", "pitch", "roll")),
+        *(output(f"rates.{a}", 0.0, "rad/s", f"{a} rate, frame B", nominal=0.1, mean=True, slope=True) for a in ("yaw", "pitch", "roll")),
         output("energy.kinetic", 0.0, "J", "of the whole vehicle, gear undeformed", nominal=1e3),
         output("energy.potential", 0.0, "J", "m g x, zero at the origin of L", nominal=1e3),
         *(output(f"{port}.work", 0.0, "J", "done on the body through this port since the start", nominal=1e3) for port in PORTS),
@@ -124,6 +124,8 @@ class VehicleBody(Unit):
         now = BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"]))
         rate = body_rate(self.body, now, UNLOADED, 0.0)  # the wrenches are not known yet: legs wait for the body's motion
         write_body(self.body, now, *self.outputs[:2])
+        for axis, value in zip(("yaw", "pitch", "roll"), now.rate, strict=True):
+            self[f"rates.{axis}_mean"] = value
         self["body.acceleration"] = self["body.acceleration_mean"] = rate.acceleration
         self["body.angular_acceleration"] = self["body.angular_acceleration_mean"] = rate.spin_up
 
