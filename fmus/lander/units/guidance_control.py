@@ -119,6 +119,6 @@ class GuidanceControl(Unit):
         (y, z), swirl = self["thrust_offset"], self.value("swirl")
         for suffix, value in (("", end), ("_mean", mean), ("_slope", slope)):
             self["engine.force" + suffix] = (value, 0.0, 0.0)
-            self["engine.torque" + suffix] = (swirl * value, z * value, 0.0 - y * value)
+            self["engine.torque" + suffix] = (0.0 + swirl * value, z * value, 0.0 - y * value)
             self["engine.thrust" + suffix] = value
         self["engine.on"] = float(end > 0.0)
