@@ -213,3 +213,23 @@ def test_a_scenario_with_somebody_else_s_unit_has_no_twin(zupp: Addresses) -> No
     found, reason = twin_parameters(run_with(overlay(zupp, {}, [insert])))
     assert found is None
     assert "unit foreign (LunarLander) has no part in the twin" in reason
+
+
+@pytest.mark.parametrize("name", ["apollo11_zupp", "apollo11_adams"])
+def test_the_twin_of_a_scenario_has_the_parameters_of_its_twin_scenario(name: str) -> None:
+    found, reason = twin_parameters(Addresses(drawn(name)))
+    assert found is not None, reason
+    twin = drawn(f"{name}_twin")
+    flat = {f"{key}[{i}]" if len(values) > 1 else key: value for key, values in found.items() for i, value in enumerate(values, 1)}
+    for unit, prefix in (("lander", ""), ("guidance", "guidance.")):
+        given = twin.values[list(twin.interfaces).index(unit)]
+        for variable in twin.interfaces[unit].of("parameter"):
+            if variable.name in ("tolerance", "longest_step", "position_start[1]") or variable.name.startswith("guidance."):
+                continue
+            asked = given.get(variable.name, variable.start)
+            assert flat.get(prefix + variable.name, number(variable.start)) == number(asked), prefix + variable.name
+
+
+def number(text: object) -> float:
+    """A start value as the description writes it."""
+    return float({"true": "1", "false": "0"}.get(str(text).lower(), str(text)))
