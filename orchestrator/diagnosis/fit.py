@@ -1,0 +1,174 @@
+"""Gauss-Newton on the posterior of a model's coordinates, sparing of landings.
+
+Minimises φ(z) = χ²(z)/(2 T²) + z'z/2. The slopes are made by differences once and then kept up to date by Broyden's rank-one formula,
+which costs no landing; they are made anew where a step gains much less than they promise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import log_ndtr
+
+from orchestrator.diagnosis.coordinates import Coordinate, clipped
+from orchestrator.diagnosis.problem import Model
+
+Array = NDArray[np.float64]
+REACH = 2.5  # of one step in any z
+ENOUGH = 0.05  # of φ: a step that promises less is not made
+TRIES = 3  # of a step, each 0.35 times the last
+POOR = 0.3  # of what was promised: the slopes are no longer those of this place
+
+
+@dataclass
+class Fit:
+    """A hypothesis at its best point."""
+
+    coordinates: tuple[Coordinate, ...]
+    z: Array
+    predicted: Array
+    residual: Array
+    slopes: Array
+    """(n, m): derivatives of the prediction by z."""
+    jacobian: Array
+    """(n, m): those of the white prediction."""
+    log_evidence: float
+
+    @property
+    def chi2(self) -> float:
+        return float(self.residual @ self.residual)
+
+    @property
+    def objective(self) -> float:
+        return 0.5 * self.chi2 + 0.5 * float(self.z @ self.z)
+
+    @property
+    def covariance(self) -> Array:
+        """Of z, by Laplace."""
+        return np.asarray(np.linalg.inv(self.jacobian.T @ self.jacobian + np.eye(len(self.z))))
+
+    def estimate(self, place: int) -> tuple[float, float]:
+        """p and its standard deviation."""
+        c = self.coordinates[place]
+        return c.value(float(self.z[place])), c.sigma * float(np.sqrt(self.covariance[place, place]))
+
+
+def gauss_newton_step(jacobian: Array, residual: Array, z: Array, coordinates: Sequence[Coordinate], temper: float) -> Array:
+    """The step of φ's quadratic model, within REACH and the coordinates' limits."""
+    low, high = np.array([c.bounds for c in coordinates]).reshape(-1, 2).T
+    hessian = jacobian.T @ jacobian / temper**2 + np.eye(len(z))
+    slope = jacobian.T @ residual / temper**2 - z
+    free = np.ones(len(z), dtype=bool)
+    step = np.zeros(len(z))
+    for _ in range(4):
+        step[:] = 0.0
+        step[free] = np.linalg.solve(hessian[np.ix_(free, free)], slope[free])
+        stuck = free & (((z <= low) & (step < 0.0)) | ((z >= high) & (step > 0.0)))
+        if not stuck.any():
+            break
+        free &= ~stuck
+    largest = float(np.abs(step).max(initial=0.0))
+    step *= min(1.0, REACH / largest) if largest > 0.0 else 1.0
+    return np.asarray(np.clip(z + step, low, high) - z)
+
+
+def log_evidence(coordinates: Sequence[Coordinate], z: Array, residual: Array, jacobian: Array) -> float:
+    """Laplace: ln ∫ exp(-φ) over the prior, less the constant that all hypotheses share.
+
+    The optimum is taken from the quadratic model, beyond a limit z >= 0 too; each half-normal prior then counts with
+    2 Φ(ẑ/σ_z), which is 2 well inside and goes to the one-sided integral at the limit.
+    """
+    hessian = jacobian.T @ jacobian + np.eye(len(z))
+    slope = jacobian.T @ residual - z
+    covariance = np.linalg.inv(hessian)
+    step = covariance @ slope
+    positive = np.array([c.positive for c in coordinates], dtype=bool)
+    at_limit = positive & (z <= 1e-9)
+    if not at_limit.any() and float(np.abs(step).max(initial=0.0)) > 1.0:
+        step = np.zeros_like(step)  # not converged: no credit for a gain that was never flown
+    gain = 0.5 * float(slope @ step)
+    total = -0.5 * float(residual @ residual + z @ z) + gain - 0.5 * float(np.linalg.slogdet(hessian)[1])
+    for i in np.flatnonzero(positive):
+        total += np.log(2.0) + float(log_ndtr((z[i] + step[i]) / np.sqrt(covariance[i, i])))
+    return total
+
+
+def broyden(slopes: Array, move: Array, change: Array) -> None:
+    """S += (Δ - S s) s'/s's, in place; change: of the prediction over the move s."""
+    size = float(move @ move)
+    if size > 1e-12:
+        slopes += np.outer(change - slopes @ move, move) / size
+
+
+def seen_from(model: Model, z: Array, predicted: Array, slopes: Array) -> Fit:
+    """A fit at a point, as the present noise of the landings sees it."""
+    residual, jacobian = model.residual(predicted), model.whitened(slopes, predicted)
+    return Fit(model.coordinates, z, predicted, residual, slopes, jacobian, log_evidence(model.coordinates, z, residual, jacobian))
+
+
+def fitted(
+    model: Model, z: Array, slopes: Array, predicted: Array | None = None, *, temper: float = 1.0, steps: int = 6, renew: Sequence[int] = (), renewals: int = 1
+) -> Fit | None:
+    """The model fitted from z with slopes made there or near; None where nothing there can be flown.
+
+    renew     columns to make anew where the slopes prove poor, at most `renewals` times
+    """
+    z = clipped(model.coordinates, z)
+    predicted = model.predict(z) if predicted is None else predicted
+    if predicted is None:
+        return None
+    slopes, residual = slopes.copy(), model.residual(predicted)
+    for _ in range(steps):
+        jacobian = model.whitened(slopes, predicted)
+        step = gauss_newton_step(jacobian, residual, z, model.coordinates, temper)
+        promised = _objective(residual, z, temper) - _objective(residual - jacobian @ step, z + step, temper)
+        if promised < ENOUGH:
+            break
+        made = _made(model, z, predicted, slopes, step, _objective(residual, z, temper), temper)
+        gained = 0.0
+        if made is not None:
+            gained = _objective(residual, z, temper) - _objective(made[2], made[0], temper)
+            z, predicted, residual = made
+        if gained < POOR * promised:
+            if renewals == 0 or not renew:
+                if made is None:
+                    break
+                continue
+            renewals -= 1
+            slopes[:, list(renew)] = model.slopes(z, predicted, renew)
+    return seen_from(model, z, predicted, slopes)
+
+
+def _made(model: Model, z: Array, predicted: Array, slopes: Array, step: Array, now: float, temper: float) -> tuple[Array, Array, Array] | None:
+    """The step, or a part of it, that lowers φ: point, prediction, residual. Whatever was flown teaches the slopes."""
+    for _ in range(TRIES):
+        there = model.predict(z + step)
+        if there is not None:
+            broyden(slopes, step, there - predicted)
+            residual = model.residual(there)
+            if _objective(residual, z + step, temper) < now:
+                return z + step, there, residual
+        step = 0.35 * step
+    return None
+
+
+def refined(model: Model, fit: Fit, which: Sequence[int], steps: int = 4) -> Fit:
+    """The fit with the columns `which` of its slopes made anew at its point, taken on from there, and again if it moved far."""
+    for _ in range(2):
+        start, slopes = fit.z, fit.slopes.copy()
+        slopes[:, list(which)] = model.slopes(fit.z, fit.predicted, which)
+        better = fitted(model, fit.z, slopes, fit.predicted, steps=steps)
+        fit = better if better is not None else fit
+        if float(np.abs(fit.z - start).max(initial=0.0)) < 0.3:
+            break
+    return fit
+
+
+def _objective(residual: Array, z: Array, temper: float) -> float:
+    return 0.5 * float(residual @ residual) / temper**2 + 0.5 * float(z @ z)
+
+
+__all__ = ["Fit", "fitted", "refined", "seen_from"]

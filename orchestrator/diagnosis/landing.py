@@ -1,0 +1,144 @@
+"""One landing for the search: the LunarLander twin's FMU from touchdown to rest, its course kept where the data want it.
+
+A search asks for a thousand landings, so nothing here is built twice: the instance is reset and set up again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.errors import OrchestratorError, StepError
+from orchestrator.fmi.description import read_interface
+from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.master.slave import Binding, Kind, Status, Value
+
+Array = NDArray[np.float64]
+AXES = ("yaw", "pitch", "roll")
+RATES = tuple(f"rates.{axis}" for axis in AXES)
+ATTITUDE = tuple(f"attitude.{axis}" for axis in AXES)
+SPIN = tuple(f"body.angular_acceleration[{i}]" for i in (1, 2, 3))
+SENSOR = "sensor."
+HEIGHT = "position_start[1]"
+
+
+@dataclass(frozen=True)
+class Course:
+    """A landing: columns over `times` (s since first contact) and what is left at the end."""
+
+    times: Array
+    columns: Mapping[str, Array]
+    final: Mapping[str, float]
+
+
+class Lander(Protocol):
+    """What the search flies. Values by the names of the twin's variables; those of the rate sensor with `sensor.` before them."""
+
+    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+        """The landing over the grid (s, from 0); None where these values cannot be flown to the end."""
+
+    def close(self) -> None: ...
+
+
+class TwinLander:
+    """The twin's FMU with the sensor's behind it."""
+
+    def __init__(self, lander: Path, sensor: Path, base: Mapping[str, float]) -> None:
+        """`base`: the values of the scenario, as `Lander.land` takes them; what stands there is not set again at each landing."""
+        self.base = dict(base)
+        self.unit = Fmi2Unit("lander", lander, read_interface(lander))
+        self.sensor = Fmi2Unit("sensor", sensor, read_interface(sensor))
+        self.bound: tuple[tuple[str, ...], tuple[str, ...]] | None = None
+        legs = [name for name in self.unit.interface.variables if name.startswith("soil") and name.endswith(".gap")]
+        self.gaps = tuple(legs)
+        self._bind_sensor()
+
+    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+        wanted = tuple(dict.fromkeys([*RATES, *SPIN, *columns]))
+        self._bind(wanted, tuple(final))
+        all_values = {**self.base, **values}
+        own = {name: value for name, value in all_values.items() if not name.startswith(SENSOR)}
+        try:
+            self._touch_down(own, float(grid[-1]))
+            rows = self._fly(grid)
+        except OrchestratorError:
+            return None
+        course = {name: rows[:, i] for i, name in enumerate(wanted)}
+        course |= self._sensed(grid, course, {n[len(SENSOR) :]: v for n, v in all_values.items() if n.startswith(SENSOR)})
+        last = self.outputs[len(wanted) + len(self.gaps) :].copy()
+        return Course(grid, course, dict(zip(final, last.tolist(), strict=True)))
+
+    def close(self) -> None:
+        self.unit.close()
+        self.sensor.close()
+
+    def _bind(self, columns: tuple[str, ...], final: tuple[str, ...]) -> None:
+        if self.bound == (columns, final):
+            return
+        names = (*columns, *self.gaps, *final)
+        self.outputs = np.zeros(len(names))
+        self.unit.bind(Binding((), (), names, len(columns), np.zeros(0), self.outputs))
+        self.bound = (columns, final)
+
+    def _touch_down(self, values: Mapping[str, float], stop: float) -> None:
+        """Initialised with the lowest pad just at the ground: the gap is linear in the height, so one correction is exact."""
+        start: dict[str, Value] = {name: self._kind(name, value) for name, value in values.items()}
+        first = len(self.bound[0]) if self.bound else 0
+        gaps = slice(first, first + len(self.gaps))
+        for _ in range(2):
+            self.unit.set_up(0.0, stop, start)
+            self.unit.exchange()
+            gap = float(self.outputs[gaps].min())
+            if abs(gap) < 1e-9:
+                break
+            start[HEIGHT] = float(start.get(HEIGHT, 4.0)) - gap
+        if self.unit.complaint:
+            raise StepError(self.unit.complaint)
+        self.unit.begin()
+
+    def _kind(self, name: str, value: float) -> Value:
+        kind = self.unit.interface.variables[name].kind
+        return value if kind is Kind.REAL else round(value) if kind is Kind.INTEGER else bool(value)
+
+    def _fly(self, grid: Array) -> Array:
+        count = len(self.bound[0]) if self.bound else 0
+        rows = np.empty((len(grid), count))
+        rows[0] = self.outputs[:count]
+        instants = grid.tolist()
+        for i in range(1, len(instants)):
+            if self.unit.step(instants[i - 1], instants[i] - instants[i - 1]) is not Status.OK:
+                raise StepError("the twin refused a step")
+            rows[i] = self.outputs[:count]
+        self.unit.observe()
+        return rows
+
+    def _bind_sensor(self) -> None:
+        inputs = (*RATES, *(f"{name}_slope" for name in RATES))
+        self.sensor_in, self.sensor_out = np.zeros(6), np.zeros(3)
+        self.sensor.bind(Binding(inputs, (), tuple(f"telemetry.{axis}" for axis in AXES), 3, self.sensor_in, self.sensor_out))
+
+    def _sensed(self, grid: Array, course: Mapping[str, Array], values: Mapping[str, float]) -> dict[str, Array]:
+        """What the ground receives of the rates, by the sensor's own FMU; the rates themselves where it is neutral."""
+        names = [f"telemetry.{axis}" for axis in AXES]
+        rates = np.column_stack([course[name] for name in RATES])
+        variables = self.sensor.interface.variables
+        if all(float(variables[name].start or 0.0) == value for name, value in values.items()):
+            return dict(zip(names, rates.T, strict=True))
+        received = np.empty_like(rates)
+        self.sensor_in[:3], self.sensor_in[3:] = rates[0], 0.0
+        self.sensor.set_up(float(grid[0]), float(grid[-1]), dict(values))
+        self.sensor.exchange()
+        self.sensor.begin()
+        received[0] = self.sensor_out
+        steps = np.diff(grid)
+        slopes = np.diff(rates, axis=0) / steps[:, None]
+        for i, (time, step) in enumerate(zip(grid.tolist(), steps.tolist(), strict=False)):
+            self.sensor_in[:3], self.sensor_in[3:] = rates[i], slopes[i]
+            self.sensor.step(time, step)
+            received[i + 1] = self.sensor_out
+        return dict(zip(names, received.T, strict=True))

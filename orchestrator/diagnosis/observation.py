@@ -1,0 +1,160 @@
+"""From a landing's course to the numbers that were measured, and from both to a white residual.
+
+Rows of a residual stand in the order of `Observation.labels`: series by series, channel by channel, then the values at rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from orchestrator.diagnosis.landing import ATTITUDE, RATES, SPIN, Course
+from orchestrator.diagnosis.noise import Noise, Whitening
+
+Array = NDArray[np.float64]
+ORIGIN = "time.origin"
+CLOCK = "clock."
+FILL = 0.02  # s: the search's own grid between the samples
+CLOSE = 1e-3  # s: samples closer than this share a point of the grid
+EDGE = 0.05  # of an interval's width: how sharply its ends are meant
+
+
+@dataclass(frozen=True)
+class Track:
+    """One measured channel of a series: where it is in a course, when it was sampled, what was read."""
+
+    series: str
+    channel: str
+    """As the data call it."""
+    column: str
+    """As a course calls it."""
+    times: Array
+    readings: Array
+    sigma: float
+    colour: float | None
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One number at rest: value ± sigma, or an interval."""
+
+    name: str
+    column: str
+    """Of `Course.final`."""
+    value: float
+    sigma: float
+    low: float = -np.inf
+    high: float = np.inf
+    interval: bool = False
+
+
+class Observation:
+    """What one landing left: tracks and readings, and the noise believed of each track."""
+
+    def __init__(self, tracks: Sequence[Track], readings: Sequence[Reading]) -> None:
+        self.tracks, self.readings = tuple(tracks), tuple(readings)
+        self.shift = 0.0
+        """s: time of the data at first contact, as first guessed; a coordinate refines it."""
+        self.set_noise([Noise(t.sigma, t.colour or 0.0, _interval(t.times)) for t in self.tracks])
+        self.columns = tuple(dict.fromkeys(t.column for t in self.tracks if not t.column.startswith("telemetry.")))
+        self.final = tuple(dict.fromkeys(r.column for r in self.readings))
+        self.places = _places([len(t.times) for t in self.tracks] + [1] * len(self.readings))
+
+    @property
+    def size(self) -> int:
+        return self.places[-1].stop if self.places else 0
+
+    @property
+    def labels(self) -> list[str]:
+        """A name for every row."""
+        return [t.channel for t in self.tracks for _ in t.times] + [r.name for r in self.readings]
+
+    def set_noise(self, noises: Sequence[Noise]) -> None:
+        self.noises = tuple(noises)
+        self.whitenings = [Whitening(t.times, noise) for t, noise in zip(self.tracks, noises, strict=True)]
+
+    def grid(self, stop: float) -> Array:
+        """Instants (s since first contact) the search lands by: every sample as first dated, and points between."""
+        samples = np.concatenate([t.times - self.shift for t in self.tracks]) if self.tracks else np.zeros(0)
+        samples = samples[(samples > CLOSE) & (samples < stop - CLOSE)]
+        own = np.arange(0.0, stop, FILL) if self.tracks else np.linspace(0.0, stop, 9)[:-1]
+        points = np.unique(np.round(np.concatenate([samples, [stop]]), 9))
+        apart = np.abs(own[:, None] - points[None, :]).min(axis=1) > 0.25 * FILL
+        merged = np.sort(np.concatenate([points, own[apart], [0.0]]))
+        return merged[np.concatenate([[True], np.diff(merged) > CLOSE])]
+
+    def predicted(self, course: Course, values: Mapping[str, float]) -> Array:
+        """The numbers that this course would have left, in their own units; intervals give their final value."""
+        rows = [self._track(t, course, values) for t in self.tracks]
+        return np.concatenate([*rows, np.array([course.final[r.column] for r in self.readings])])
+
+    def residual(self, predicted: Array) -> Array:
+        """White residual: data less prediction, in standard deviations. An interval counts only outside its ends."""
+        parts = [w(t.readings - predicted[p]) for t, w, p in zip(self.tracks, self.whitenings, self.places, strict=False)]
+        last = predicted[self.places[len(self.tracks)].start :] if self.readings else np.zeros(0)
+        return np.concatenate([*parts, np.array([_missed(r, x) for r, x in zip(self.readings, last.tolist(), strict=True)])])
+
+    def whitened(self, slopes: Array, predicted: Array) -> Array:
+        """Derivatives of the white prediction from those of the prediction, (n, m); inside an interval nothing changes."""
+        parts = [w(slopes[p]) for w, p in zip(self.whitenings, self.places, strict=False)]
+        first = self.places[len(self.tracks)].start if self.readings else 0
+        rows = [_weight(r, predicted[first + i]) * slopes[first + i] for i, r in enumerate(self.readings)]
+        return np.concatenate([*parts, np.array(rows).reshape(len(rows), slopes.shape[1])])
+
+    def weights(self, horizon: float) -> Array:
+        """1 for the rows that count when a landing is flown to `horizon` s only: samples until then; readings at rest at the end alone."""
+        rows = [(t.times - self.shift <= horizon).astype(np.float64) for t in self.tracks]
+        return np.concatenate([*rows, np.full(len(self.readings), float(horizon == np.inf))])
+
+    def raw(self, predicted: Array, place: int) -> Array:
+        """Data less prediction of one track in its own unit."""
+        return self.tracks[place].readings - predicted[self.places[place]]
+
+    def _track(self, track: Track, course: Course, values: Mapping[str, float]) -> Array:
+        late = self.shift + values.get(ORIGIN, 0.0) + values.get(CLOCK + track.series, 0.0)
+        return sampled(course, track.column, track.times - late)
+
+
+def sampled(course: Course, column: str, times: Array) -> Array:
+    """A column at other instants: cubic where its rate of change is known, straight lines elsewhere.
+
+    Before first contact (s < 0) the vehicle flies free: rates stay, angles go on along their slope. After the end the last value holds.
+    """
+    grid, y = course.times, course.columns[column]
+    if column in RATES:
+        slope = course.columns[SPIN[RATES.index(column)]]
+        inside = CubicHermiteSpline(grid, y, slope)(np.clip(times, grid[0], grid[-1]))
+        return np.asarray(inside)
+    inside = np.interp(times, grid, y)
+    if column in ATTITUDE:
+        early = times < grid[0]
+        first = (y[1] - y[0]) / (grid[1] - grid[0])
+        inside = np.where(early, y[0] + first * (times - grid[0]), inside)
+    return np.asarray(inside)
+
+
+def _missed(reading: Reading, value: float) -> float:
+    if not reading.interval:
+        return (reading.value - value) / reading.sigma
+    outside = max(reading.low - value, 0.0) - max(value - reading.high, 0.0)
+    return outside / (EDGE * (reading.high - reading.low))
+
+
+def _weight(reading: Reading, value: float) -> float:
+    """How fast the residual of a reading falls with its prediction."""
+    if not reading.interval:
+        return 1.0 / reading.sigma
+    return 0.0 if reading.low <= value <= reading.high else 1.0 / (EDGE * (reading.high - reading.low))
+
+
+def _places(sizes: Sequence[int]) -> list[slice]:
+    ends = np.cumsum([0, *sizes]).tolist()
+    return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+
+
+def _interval(times: Array) -> float:
+    return float(np.median(np.diff(times))) if len(times) > 1 else 1.0

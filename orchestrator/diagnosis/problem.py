@@ -1,0 +1,121 @@
+"""The least-squares problem of a diagnosis: landings, what may vary, and the residual at a point.
+
+A point z holds one number per coordinate, each with a standard normal prior, so that the objective of every hypothesis is
+χ²(z) + z'z and the curvature of the log posterior is J'J + 1, J the Jacobian of the white prediction. Kept are the derivatives of the
+prediction itself (slopes), so that a better knowledge of the noise costs no landing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate, applied
+from orchestrator.diagnosis.landing import Lander
+from orchestrator.diagnosis.observation import Observation
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Landings:
+    """Measured landings of one vehicle, the scenario's values for each, and the lander that flies them."""
+
+    observations: list[Observation]
+    bases: list[dict[str, float]]
+    stop: list[float]
+    """s since first contact to fly each of them."""
+
+    def __post_init__(self) -> None:
+        self.grids = [o.grid(stop) for o, stop in zip(self.observations, self.stop, strict=True)]
+
+    @property
+    def size(self) -> int:
+        return sum(o.size for o in self.observations)
+
+    @property
+    def parts(self) -> list[slice]:
+        """Rows of each landing in a residual."""
+        ends = np.cumsum([0, *(o.size for o in self.observations)]).tolist()
+        return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+
+
+class Model:
+    """Predictions at points over a set of coordinates, of landings flown to a horizon (s since first contact) or to their end."""
+
+    def __init__(self, landings: Landings, coordinates: Sequence[Coordinate], lander: Lander, horizon: float = np.inf) -> None:
+        self.landings, self.coordinates, self.lander, self.horizon = landings, tuple(coordinates), lander, horizon
+        self.weights = np.concatenate([o.weights(horizon) for o in landings.observations])
+        self.grids = [grid if horizon == np.inf else grid[: int(np.searchsorted(grid, horizon)) + 2] for grid in landings.grids]
+
+    def predict(self, z: Array, before: tuple[Array, Array] | None = None) -> Array | None:
+        """What all landings would have left; None where one of them cannot be flown.
+
+        before: a point and its prediction; landings that no changed coordinate touches are taken from there.
+        """
+        rows = []
+        for k, part in enumerate(self.landings.parts):
+            if before is not None and not self._touched(k, z, before[0]):
+                rows.append(before[1][part])
+                continue
+            row = self._landed(k, z)
+            if row is None:
+                return None
+            rows.append(row)
+        return np.concatenate(rows)
+
+    def residual(self, predicted: Array) -> Array:
+        pairs = zip(self.landings.observations, self.landings.parts, strict=True)
+        return np.concatenate([o.residual(predicted[part]) for o, part in pairs]) * self.weights
+
+    def whitened(self, slopes: Array, predicted: Array) -> Array:
+        """J: derivatives of the white prediction, from those of the prediction."""
+        pairs = zip(self.landings.observations, self.landings.parts, strict=True)
+        return np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None]
+
+    def slope(self, i: int, z: Array, predicted: Array) -> Array:
+        """Derivative of the prediction by z_i, by a difference away from the nearer limit."""
+        low, high = self.coordinates[i].bounds
+        step = self.coordinates[i].step
+        if z[i] + step > high and z[i] - step >= low:
+            step = -step
+        moved = z.copy()
+        moved[i] += step
+        there = self.predict(moved, (z, predicted))
+        if there is None:
+            moved[i] -= 2.0 * step
+            step = -step
+            there = self.predict(moved, (z, predicted))
+        if there is None:
+            return np.zeros(len(predicted))
+        return (there - predicted) / step
+
+    def slopes(self, z: Array, predicted: Array, which: Sequence[int] | None = None) -> Array:
+        """(n, m): derivatives of the prediction by `which` coordinates, all without."""
+        chosen = range(len(self.coordinates)) if which is None else which
+        columns = [self.slope(i, z, predicted) for i in chosen]
+        return np.stack(columns, axis=1) if columns else np.zeros((len(predicted), 0))
+
+    def values(self, z: Array, landing: int) -> dict[str, float]:
+        return applied(self.landings.bases[landing], self.coordinates, z, landing)
+
+    def _touched(self, landing: int, z: Array, before: Array) -> bool:
+        moved = np.flatnonzero(z != before)
+        return any(self.coordinates[i].landing in (SHARED, landing) for i in moved)
+
+    def _landed(self, k: int, z: Array) -> Array | None:
+        observation = self.landings.observations[k]
+        values = self.values(z, k)
+        own = {name: v for name, v in values.items() if not name.startswith(("clock.", "time."))}
+        course = self.lander.land({**self.landings.bases[k], **own}, self.grids[k], observation.columns, observation.final)
+        if course is None or not all(np.isfinite(c).all() for c in course.columns.values()):
+            return None
+        return observation.predicted(course, values)
+
+
+
+
+__all__ = ["Landings", "Model"]
