@@ -63,8 +63,12 @@ def write_overlay(
     inserts: Sequence[Insert] = (),
     title: str = "",
     remarks: Iterable[str] = (),
+    results: Tree | None = None,
 ) -> Path:
-    """The overlay as a TOML file beside any folder: `extends` the base scenario, and says of every change what, how sure and why."""
+    """The overlay as a TOML file beside any folder: `extends` the base scenario, and says of every change what, how sure and why.
+
+    results: more keys of its `[results]` table.
+    """
     base = addresses.blueprint.path
     if base is None:
         raise AddressError(f"{addresses.where}: has no file that an overlay could extend; save the scenario first")
@@ -73,8 +77,11 @@ def write_overlay(
     head: Tree = {"title": title or f"{addresses.blueprint.scenario.table.title}, revised", "extends": _relative(base, folder)}
     head["fmus"] = _relative(addresses.folder, folder)
     references = addresses.results.references
+    own = dict(results or {})
     if references and (base.parent / references).is_file():
-        tree["results"] = {"references": _relative(base.parent / references, folder)}
+        own["references"] = _relative(base.parent / references, folder)
+    if own:
+        tree["results"] = own
     lines = [f"# {_one_line(remark)}" for remark in remarks] + [_remark(change) for change in changes]
     text = tomli_w.dumps(head) + "\n" + "\n".join(lines) + "\n\n" + tomli_w.dumps(tree)
     path.parent.mkdir(parents=True, exist_ok=True)

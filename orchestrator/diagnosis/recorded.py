@@ -75,3 +75,31 @@ def _checked(addresses: Addresses, found: str, name: str) -> str:
     if variable not in outputs:
         raise AddressError(f'{addresses.where}: {name}: unit {unit} has no output "{variable}"; {nearest(variable, outputs)}')
     return found
+
+
+def cosimulation_column(addresses: Addresses, name: str) -> str:
+    """"unit.variable" of a column that the search calls by its twin's name; what is no twin's name is "unit.variable" already.
+
+    Telemetry without a RateSensor is the body's rates.
+    """
+    heard = name.removeprefix("sensor.")
+    if heard.startswith("telemetry."):
+        sensors = addresses.units("sensor")
+        return f"{sensors[0]}.{heard}" if sensors else f"{addresses.results.body}.rates.{heard.rpartition('.')[2]}"
+    return _of_leg(addresses, name) or _of_vehicle(addresses, name)
+
+
+def _of_leg(addresses: Addresses, name: str) -> str:
+    """legN.* and soilN.* of the twin; nothing for another name."""
+    place, _, rest = name.partition(".")
+    for i, channels in _numbered(addresses):
+        if place in (f"leg{i}", f"soil{i}"):
+            return f"{channels.leg if place.startswith('leg') else channels.soil}.{rest}"
+    return ""
+
+
+def _of_vehicle(addresses: Addresses, name: str) -> str:
+    body, interfaces = addresses.results.body, addresses.blueprint.interfaces
+    if body in interfaces and name in interfaces[body].variables and interfaces[body].variables[name].causality == "output":
+        return f"{body}.{name}"
+    return _checked(addresses, name, name)

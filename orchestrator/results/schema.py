@@ -42,6 +42,8 @@ class ResultsTable(BaseModel):
     measured: str | None = None
     work: list[str] | None = None
     report: dict[str, ReportEntry] = Field(default_factory=dict)
+    clock_offsets: dict[str, float] = Field(default_factory=dict)
+    """Series of measured data -> s that a diagnosis found its clock ahead; nothing simulated moves by it."""
 
     @property
     def resolved_kind(self) -> Literal["touchdown", "generic"]:

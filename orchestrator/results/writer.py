@@ -53,7 +53,7 @@ def summarise(
         "interrupted": result.interrupted,
         "message": result.message,
         "warnings": list(result.warnings),
-        "notes": _reference_notes(table, published),
+        "notes": [*_reference_notes(table, published), *_clock_notes(table)],
     }
     landing = table.resolved_kind == "touchdown"
     summary |= touchdown(channels, table) if landing else generic(channels, result.units)
@@ -86,6 +86,11 @@ def _reference_notes(table: ResultsTable, published: references.References) -> l
     if published.fault:
         return [published.fault]
     return [f"[results]: nothing is published under {name!r}; {where}" for name in published.unknown([table.compare, table.measured])]
+
+
+def _clock_notes(table: ResultsTable) -> list[str]:
+    """What a reader must know before laying measured data over the run."""
+    return [f"the clock of {series} reads {offset:+.4g} s: take that off its times" for series, offset in table.clock_offsets.items()]
 
 
 def _published(result: RunResult, table: ResultsTable, out: Path) -> references.References:

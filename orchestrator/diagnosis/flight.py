@@ -1,0 +1,163 @@
+"""The scenario of separate units flown through the master for given values: what a diagnosis reports is computed here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from orchestrator.blueprint import Blueprint, draw_up, read_scenario
+from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.effects.effect import Insert
+from orchestrator.diagnosis.landing import RATES, SPIN, Course
+from orchestrator.diagnosis.overlay import overlay
+from orchestrator.diagnosis.recorded import cosimulation_column
+from orchestrator.errors import OrchestratorError
+from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.master.result import RunResult
+from orchestrator.master.slave import Interface
+from orchestrator.scenario.read import Tree, merge
+from orchestrator.simulation import Simulation
+
+TELEMETRY = tuple(name.replace("rates", "telemetry") for name in RATES)
+PEAK = "peak."
+_NO_UNIT_S = ("clock.", "time.")
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A landing through the master. `course` is None where it could not be flown to the end; `reason` says why, or why not to trust it."""
+
+    course: Course | None
+    reason: str = ""
+    result: RunResult | None = None
+
+
+class LoadedUnits:
+    """FMUs instantiated once and set up again for every run: loading costs more than a short landing."""
+
+    def __init__(self) -> None:
+        self._units: dict[str, tuple[Interface, Fmi2Unit]] = {}
+
+    def run(self, blueprint: Blueprint) -> RunResult:
+        """As a scenario's run from fresh instances, to the bit."""
+        try:
+            result = Simulation(blueprint, [self._loaded(name, it) for name, it in blueprint.interfaces.items()]).run()
+        except BaseException:
+            self.close()  # a unit that failed is not used again
+            raise
+        if not result.complete:
+            self.close()
+        return result
+
+    def close(self) -> None:
+        for _, unit in self._units.values():
+            unit.close()
+        self._units.clear()
+
+    def _loaded(self, name: str, interface: Interface) -> Fmi2Unit:
+        known = self._units.get(name)
+        if known is not None and known[0].sha256 == interface.sha256:
+            return known[1]
+        if known is not None:
+            known[1].close()
+        if interface.path is None:
+            raise ValueError(f"{name} is not an FMU")
+        unit = Fmi2Unit(name, interface.path, interface)
+        self._units[name] = (interface, unit)
+        return unit
+
+
+class CoSimulation:
+    """One scenario, flown as often as asked with other values and other units added."""
+
+    def __init__(self, scenario: Path, overrides: Sequence[str] = ()) -> None:
+        self.path, self.overrides = scenario, tuple(overrides)
+        self.addresses = Addresses(draw_up(read_scenario(scenario, self.overrides), scenario))
+        self.units = LoadedUnits()
+        self.flown = 0
+
+    def fly(
+        self,
+        values: Mapping[str, ArrayLike],
+        inserts: Sequence[Insert] = (),
+        stop: float | None = None,
+        columns: Sequence[str] = (),
+        final: Sequence[str] = (),
+        settings: Tree | None = None,
+    ) -> Flight:
+        """values: by address; `clock.` and `time.` are passed over. stop: s since the start of the run, the scenario's own without.
+        columns, final: names as the search has them, or "unit.variable". settings: merged over the scenario, e.g. {"master": {...}}.
+        """
+        self.flown += 1
+        try:
+            result, addresses = self._flown(values, inserts, stop, (*columns, *final), settings or {})
+            if not result.complete:
+                return Flight(None, result.message, result)
+            return Flight(course_of(addresses, result, columns, final), result.message, result)
+        except OrchestratorError as error:
+            return Flight(None, str(error))
+
+    def blueprint(
+        self, values: Mapping[str, ArrayLike], inserts: Sequence[Insert] = (), stop: float | None = None, settings: Tree | None = None
+    ) -> Blueprint:
+        """The scenario with these values, checked again."""
+        own = {address: value for address, value in values.items() if not address.startswith(_NO_UNIT_S)}
+        tree = merge(overlay(self.addresses, own, inserts), settings or {})
+        if stop is not None:
+            tree = merge(tree, {"stop_time": self.addresses.blueprint.scenario.table.start_time + stop})
+        return draw_up(read_scenario(self.path, self.overrides, tree), self.path)
+
+    def close(self) -> None:
+        self.units.close()
+
+    def _flown(
+        self, values: Mapping[str, ArrayLike], inserts: Sequence[Insert], stop: float | None, names: Sequence[str], settings: Tree
+    ) -> tuple[RunResult, Addresses]:
+        blueprint = self.blueprint(values, inserts, stop, settings)
+        addresses = Addresses(blueprint)
+        also_record(blueprint, needed_columns(addresses, names))
+        return self.units.run(blueprint), addresses
+
+
+def needed_columns(addresses: Addresses, names: Sequence[str]) -> list[str]:
+    """What must be recorded for a course with these columns and final values."""
+    wanted = [*RATES, *SPIN, *TELEMETRY, *(name.removeprefix(PEAK) for name in names)]
+    return list(dict.fromkeys(cosimulation_column(addresses, name) for name in wanted))
+
+
+def also_record(blueprint: Blueprint, columns: Sequence[str]) -> None:
+    """Add "unit.variable"s to what a run keeps."""
+    places = {name: place for place, name in enumerate(blueprint.interfaces)}
+    blueprint.recorded = [list(names) for names in blueprint.recorded] or [[] for _ in places]
+    for column in columns:
+        unit, _, variable = column.partition(".")
+        kept = blueprint.recorded[places[unit]]
+        if variable not in kept:
+            kept.append(variable)
+
+
+def course_of(addresses: Addresses, result: RunResult, columns: Sequence[str], final: Sequence[str]) -> Course:
+    """A run as the search's landings look: by the search's names, over s since first contact."""
+    wanted = dict.fromkeys([*RATES, *SPIN, *TELEMETRY, *columns])
+    rows = {name: result.columns[cosimulation_column(addresses, name)] for name in wanted}
+    contact = first_contact(addresses, result)
+    return Course(result.times - contact, rows, {name: _final(addresses, result, name, contact) for name in final})
+
+
+def first_contact(addresses: Addresses, result: RunResult) -> float:
+    """s. A scenario that solves its start begins there; else the soils tell."""
+    if addresses.blueprint.scenario.table.start is not None:
+        return result.start_time
+    times = [result.columns.get(f"{legs.soil}.contact_time", np.array([-1.0]))[-1] for legs in addresses.results.legs.values()]
+    return float(min((time for time in times if time >= 0.0), default=result.start_time))
+
+
+def _final(addresses: Addresses, result: RunResult, name: str, contact: float) -> float:
+    """The last value; of a peak the one of largest magnitude, with its sign; an instant counts from first contact, -1 means never."""
+    column = result.columns[cosimulation_column(addresses, name.removeprefix(PEAK))]
+    value = float(column[np.abs(column).argmax()] if name.startswith(PEAK) else column[-1])
+    return value - contact if name.endswith(".contact_time") and value >= 0.0 else value

@@ -1,0 +1,118 @@
+"""Landings for the search through the master: for scenarios in which the twin cannot stand in.
+
+Slower than the twin by a hundred times, so the master is held loosely. Values are those of the units, "unit.variable[i]".
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.blueprint import Blueprint, draw_up, read_scenario
+from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.effects.effect import Insert
+from orchestrator.diagnosis.flight import LoadedUnits, course_of, needed_columns
+from orchestrator.diagnosis.landing import Course
+from orchestrator.diagnosis.overlay import overlay
+from orchestrator.errors import OrchestratorError, UnitError
+from orchestrator.master.slave import Kind, Value
+from orchestrator.scenario.parameters import checked
+from orchestrator.scenario.read import merge
+from orchestrator.scenario.record import matching_outputs
+
+Array = NDArray[np.float64]
+LOOSE = {"max_interval": 5e-3, "tolerance": 1e-5}
+"""s and m a step: within 0.1 sigma (RMS a channel, sigma 1.7 mrad/s and 0.9 mrad) of the twin, at the cost of 1e-4 m, which is 0.4 to
+0.7 sigma off: more than a fit can bear."""
+
+
+class MasterLander:
+    """A `Lander` that flies the scenario's own units. Added units come in as soon as a value is given to one of them."""
+
+    def __init__(self, scenario: Path, inserts: Sequence[Insert] = (), overrides: Sequence[str] = ()) -> None:
+        self.scenario, self.overrides = scenario, tuple(overrides)
+        self.inserts = {insert.unit: insert for insert in inserts}
+        self.drawn: dict[tuple[str, ...], tuple[Blueprint, Addresses]] = {}
+        self.units = LoadedUnits()
+        self.base = self._drawn(())
+
+    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+        """The landing at the master's own instants up to the grid's end; None where it cannot be flown."""
+        try:
+            return self._landed(values, float(grid[-1]), columns, final)
+        except OrchestratorError:
+            return None
+
+    def close(self) -> None:
+        self.units.close()
+
+    def _landed(self, values: Mapping[str, float], stop: float, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+        there = self.base[0].interfaces
+        asked = dict.fromkeys(name.partition(".")[0] for name in values)
+        drawn, addresses = self._drawn(tuple(unit for unit in asked if unit not in there))
+        blueprint = _with_values(drawn, values)
+        self._until(blueprint, stop)
+        wanted = [f for f in needed_columns(addresses, [*columns, *final]) + _contact_times(addresses) if f]
+        blueprint.recorded = matching_outputs(list(dict.fromkeys(wanted)), blueprint.interfaces, "diagnosis")
+        result = self.units.run(blueprint)
+        return course_of(addresses, result, columns, final) if result.complete else None
+
+    def _until(self, blueprint: Blueprint, stop: float) -> None:
+        """Stop times count from first contact, which is the run's start where the start is solved; else the scenario's own end stands."""
+        table = blueprint.scenario.table
+        if table.start is not None:
+            changed = table.model_copy(update={"stop_time": table.start_time + stop})
+            blueprint.scenario = replace(blueprint.scenario, table=changed)
+
+    def _drawn(self, added: tuple[str, ...]) -> tuple[Blueprint, Addresses]:
+        if added not in self.drawn:
+            unknown = [unit for unit in added if unit not in self.inserts]
+            if unknown:
+                raise UnitError(f'{self.scenario.name}: no unit "{unknown[0]}", and no effect adds one')
+            tree = {"master": dict(LOOSE), "record": {"interval": 0.0}}
+            if added:
+                tree = merge(tree, overlay(self.base[1], {}, [self.inserts[unit] for unit in added]))
+            blueprint = draw_up(read_scenario(self.scenario, self.overrides, tree), self.scenario)
+            self.drawn[added] = (blueprint, Addresses(blueprint))
+        return self.drawn[added]
+
+
+@dataclass(frozen=True)
+class MasterLanderMaker:
+    """Makes them in a worker's process."""
+
+    scenario: Path
+    inserts: tuple[Insert, ...] = ()
+    overrides: tuple[str, ...] = ()
+
+    def __call__(self) -> MasterLander:
+        return MasterLander(self.scenario, self.inserts, self.overrides)
+
+
+def _with_values(drawn: Blueprint, values: Mapping[str, float]) -> Blueprint:
+    """A copy with other start values, each checked against its variable's bounds."""
+    blueprint = copy.copy(drawn)
+    blueprint.values = [dict(given) for given in drawn.values]
+    places = {name: place for place, name in enumerate(drawn.interfaces)}
+    for name, number in values.items():
+        unit, _, variable = name.partition(".")
+        declared = drawn.interfaces[unit].variables.get(variable)
+        if declared is None:
+            raise UnitError(f'{unit}.{variable}: no such variable')
+        value: Value = number if declared.kind is Kind.REAL else round(number) if declared.kind is Kind.INTEGER else bool(number)
+        blueprint.values[places[unit]][variable] = checked(unit, declared, value)
+    return blueprint
+
+
+def _contact_times(addresses: Addresses) -> list[str]:
+    """Only where first contact is not the start."""
+    blueprint = addresses.blueprint
+    if blueprint.scenario.table.start is not None:
+        return []
+    units = ((legs.soil.partition(".")[0], f"{legs.soil}.contact_time") for legs in addresses.results.legs.values())
+    return [name for unit, name in units if name.partition(".")[2] in blueprint.interfaces[unit].variables]
