@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.moves import SEEN, Applied
-from orchestrator.diagnosis.places import LEGS, PLACES
+from orchestrator.diagnosis.places import LEGS, PLACES, parse
 from orchestrator.errors import AddressError
 from orchestrator.master.slave import stem
 
 STEPPING = ("tolerance", "longest_step", "longest_substep")
 """Of the twin's own integrator: the units have theirs."""
+AZIMUTH = "azimuth"
 _INSIDE = tuple(place for place in PLACES if place not in ("body", "gear"))
 _TWICE = {"mass": ("body.mass", "gear.vehicle_mass"), "gravity": ("body.gravity", "gear.gravity"),
           "footpad_radius": ("gear.footpad_radius", "soil.footpad_radius"),
@@ -29,7 +30,7 @@ def said_by_address(addresses: Addresses, values: Mapping[str, float]) -> Applie
     for vector, elements in vectors.items():
         for address in _addresses(addresses, vector):
             slots = addresses.resolve(address)
-            names = addresses.twin(address) or []
+            names = addresses.twin(address) or _of_one_leg(address)
             base = [addresses.number(slot) for slot in slots]
             moved = _spread(names, elements, base)
             if moved != base:
@@ -38,8 +39,8 @@ def said_by_address(addresses: Addresses, values: Mapping[str, float]) -> Applie
 
 
 def _addresses(addresses: Addresses, vector: str) -> tuple[str, ...]:
-    if vector == "azimuth":
-        return tuple(f"gear[{leg}].azimuth" for leg in LEGS)
+    if vector == AZIMUTH and not addresses.is_twin:
+        return tuple(f"gear[{leg}].{AZIMUTH}" for leg in LEGS)
     if vector in _TWICE:
         return _TWICE[vector]
     if vector.partition(".")[0] in _INSIDE:
@@ -48,6 +49,11 @@ def _addresses(addresses: Addresses, vector: str) -> tuple[str, ...]:
         if vector in addresses.interface(place, None, vector).vectors:
             return (f"{place}.{vector}",)
     raise AddressError(f"{addresses.where}: {vector}: no unit has what the twin calls so")
+
+
+def _of_one_leg(address: str) -> list[str]:
+    """The twin's azimuths have no address of their own: they are the legs' names for it."""
+    return [f"{AZIMUTH}[{LEGS.index(parse(address).leg or LEGS[0]) + 1}]"]
 
 
 def _spread(names: list[str], elements: Mapping[str, float], base: list[float]) -> list[float]:
