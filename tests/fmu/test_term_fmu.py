@@ -1,6 +1,6 @@
 """A found term as an FMU: in FMPy's hands it does what the unit does with the same parameters set, bit for bit."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +25,10 @@ STEPS = 20
 
 
 @pytest.fixture(scope="module", params=CASES)
-def case(request: pytest.FixtureRequest, fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path, Path]]:
+def case(request: pytest.FixtureRequest, fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, Path]:
     unit = request.param
     folder = tmp_path_factory.mktemp("terms")
-    yield unit, fmus[unit], build_term_fmu(folder, fmus[unit], CASES[unit][1], f"Found{unit}")
+    return unit, fmus[unit], build_term_fmu(folder, fmus[unit], CASES[unit][1], f"Found{unit}")
 
 
 def set_all(hosted: Hosted, parameters: Mapping[str, Any]) -> None:
@@ -83,7 +83,11 @@ def test_the_same_term_gives_the_same_bytes(fmus: dict[str, Path], tmp_path: Pat
 
 @pytest.mark.parametrize(
     ("parameters", "name", "says"),
-    [({"coefficient": 1.0}, "my term", "my term: is no name"), ({"axis": 9}, "T", "above its maximum 6"), ({"axes": 1}, "T", 'did you mean "axis"')],
+    [
+        ({"coefficient": 1.0}, "my term", "my term: is no name"),
+        ({"axis": 9}, "T", "above its maximum 6"),
+        ({"axes": 1}, "T", 'did you mean "axis"'),
+    ],
 )
 def test_what_cannot_be_built_is_refused_in_one_line(fmus: dict[str, Path], tmp_path: Path, parameters: Any, name: str, says: str) -> None:
     with pytest.raises(UnitError, match=says):
