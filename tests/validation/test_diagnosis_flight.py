@@ -4,7 +4,7 @@ Setup      landings of 0.25 to 1.2 s from first contact, the built FMUs through 
 Tolerance  0.2 sigma RMS a channel between twin, units and the lander that flies them for a search (sigma: 1.7 mrad/s, 0.9 mrad, 6.35 mm,
            10 mm). Measured: 0.02 to 0.08. With friction 0.4 beside the ground effect 0.18, of which the units' tolerance has all: 1e-6 m
            against an eighth of it. The sensor behind the twin takes the rates as straight lines from instant to instant of the grid: over
-           20 ms a lag of 0.1 s is 0.23 sigma off in roll, over 5 ms 0.02, so that it is landed on those
+           20 ms a lag of 0.1 s is 0.23 sigma off in roll, over 5 ms less than 0.04, so that it is landed on those
 """
 
 import json
