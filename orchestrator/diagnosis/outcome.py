@@ -42,6 +42,8 @@ class Where:
     unit: str
     port: str
     sigmas: float
+    landing: str = ""
+    """As measured and held-out landings are called; "" where there is one only."""
 
 
 @dataclass
@@ -125,6 +127,8 @@ class Outcome:
     """Simulated contacts, s."""
     seconds: float = 0.0
     warnings: list[str] = field(default_factory=list)
+    provenance: dict[str, Any] = field(default_factory=dict)
+    """What was used: versions, hashes of scenario, FMUs and data, seed, command. Name -> text or number, or a level more of them."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain data; what is not a number becomes null."""

@@ -1,0 +1,147 @@
+"""The verdict in words: one sentence, how far it goes, what to do next."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from orchestrator.diagnosis.outcome import NamedEffect, Outcome
+from orchestrator.diagnosis.report.numbers import chance, number, percent, shown_unit, spelt, with_sigma
+
+LABELS = {
+    "nothing_missing": "nothing missing",
+    "effect": "one effect",
+    "effects": "several effects",
+    "cannot_tell": "cannot tell",
+    "none_of_my_effects": "not in the library",
+    "numerics": "numerics",
+    "data_fault": "data fault",
+}
+LEAST_GAIN = 0.005
+"""Closures smaller than this are not worth a sentence."""
+
+
+def verdict_sentence(outcome: Outcome) -> str:
+    """The verdict in one or two sentences; `Outcome.sentence` where it is filled already."""
+    if outcome.sentence:
+        return outcome.sentence
+    write = {"effect": _missing, "effects": _missing, "cannot_tell": _cannot_tell, "none_of_my_effects": _outside, "data_fault": _fault}
+    if outcome.verdict in write:
+        return write[outcome.verdict](outcome)
+    if outcome.verdict == "numerics":
+        return "The numerics are not fine enough to judge."
+    return "Nothing is missing that these data could show."
+
+
+def caution(outcome: Outcome) -> str:
+    """How far the verdict goes."""
+    if outcome.verdict in ("effect", "effects"):
+        found = "; ".join(_found(effect) for effect in outcome.effects) or "this effect"
+        return f"The readings are consistent with {found}. A law that is not in the library and acts alike would look the same."
+    return {
+        "nothing_missing": "The readings are consistent with the scenario as it stands. What a landing does not excite cannot show in it.",
+        "cannot_tell": "The readings are consistent with each of these effects. Choosing one would be a guess, so none is added.",
+        "none_of_my_effects": "No effect of the library, and no pair of them, is consistent with the readings.",
+        "numerics": "The simulation moves with its own interval and tolerance by more than a fifth of the data's sigma.",
+        "data_fault": "The readings contradict themselves. No effect is looked for before they are in order.",
+    }[outcome.verdict]
+
+
+def next_step(outcome: Outcome) -> str:
+    """What to do now, a sentence before the command (or alone)."""
+    return {
+        "effect": "Run the revised scenario:",
+        "effects": "Run the revised scenario:",
+        "nothing_missing": "Nothing to change. To see what a landing like this could show at all:",
+        "cannot_tell": "Measure what would decide (below), or ask which sensor would help:",
+        "none_of_my_effects": "Write an effect for the term below into a folder of your own and search again:",
+        "numerics": "Make the interval and the tolerance of the scenario smaller, then diagnose again:",
+        "data_fault": "Mark or repair the faulty samples, then diagnose again:",
+    }[outcome.verdict]
+
+
+def command(outcome: Outcome) -> str:
+    """What to type."""
+    scenario = _quoted(outcome.scenario or "SCENARIO")
+    data = "".join(f" --measured {_quoted(folder)}" for folder in outcome.measured) or " --measured DIR"
+    if outcome.revised_scenario:
+        return f"orchestrator run {_quoted(outcome.revised_scenario)}"
+    if outcome.verdict in ("nothing_missing", "cannot_tell"):
+        return f"orchestrator distinguish {scenario}{data}"
+    held = "".join(f" --holdout {_quoted(folder)}" for folder in outcome.holdout)
+    own = " --effects FOLDER" if outcome.verdict == "none_of_my_effects" else ""
+    return f"orchestrator diagnose {scenario}{data}{held}{own}"
+
+
+def title_of(outcome: Outcome, name: str) -> str:
+    """What an effect is called in words; its name where nobody says."""
+    found = [effect.title for effect in outcome.effects if effect.name == name]
+    return next(iter(found + [c.title for c in outcome.candidates if c.name == name and c.title]), name.replace("_", " ")) or name
+
+
+def inside(title: str) -> str:
+    """A title in the middle of a sentence: Soil damping -> soil damping, RCS pulse stays."""
+    return title[:1].lower() + title[1:] if title[1:2].islower() else title
+
+
+def listed(items: list[str], last: str = "and") -> str:
+    """a, b and c."""
+    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} {last} {items[-1]}" if items else ""
+
+
+def _missing(outcome: Outcome) -> str:
+    names = listed([inside(effect.title or effect.name) for effect in outcome.effects]) or "an effect without a name"
+    sure = min((e.probability for e in outcome.effects if isfinite(e.probability)), default=float("nan"))
+    first = f"Missing: {names}, {chance(sure).replace('>', 'more than')}." if isfinite(sure) else f"Missing: {names}."
+    closure, gap = outcome.gap.closure, outcome.gap
+    if not isfinite(closure) or closure < LEAST_GAIN:
+        return first
+    held = isfinite(gap.holdout_after) or bool(outcome.holdout)
+    where = "a landing it was not fitted to" if held else "the landing it was fitted to"
+    return f"{first} Closes {percent(closure)} of the gap on {where}."
+
+
+def _cannot_tell(outcome: Outcome) -> str:
+    names = [inside(title_of(outcome, name)) for name in outcome.cannot_tell.names]
+    told = "its candidates apart" if not names else f"whether it is {names[0]}"
+    if len(names) > 1:
+        told = f"{names[0]} from {listed(names[1:], 'or')}"
+    first = [f": measure {m.channel}{_within(m.channel, m.sigma)}" for m in outcome.cannot_tell.measure[:1]]
+    return f"These data cannot tell {told}{''.join(first)}."
+
+
+def _within(channel: str, sigma: float) -> str:
+    """Of a sigma in SI, in the unit of the channel's kind."""
+    if not isfinite(sigma):
+        return ""
+    unit, factor = shown_unit(unit_of(channel))
+    return f" to within {number(factor * sigma, 2)} {spelt(unit)}".rstrip()
+
+
+def unit_of(channel: str) -> str:
+    """SI unit of a channel by what the data format calls it; "1" where the name does not say."""
+    kind = channel.removeprefix("peak.").partition(".")[0]
+    kinds = {"rates": "rad/s", "attitude": "rad", "stroke": "m", "penetration": "m", "skid": "m", "contact_time": "s"}
+    return kinds.get(kind, "1")
+
+
+def _outside(outcome: Outcome) -> str:
+    what = outcome.term.get("sentence") or outcome.term.get("name") or outcome.term.get("port")
+    return f"Something is missing that is not in the library{f': {what}' if what else ''}."
+
+
+def _fault(outcome: Outcome) -> str:
+    if not outcome.faults:
+        return "The data are at fault."
+    more = f" ({len(outcome.faults) - 1} more below)" if len(outcome.faults) > 1 else ""
+    first = outcome.faults[0]
+    return f"The data are at fault: {first.get('channel', '')} {first.get('what', '')}".rstrip() + f"{more}."
+
+
+def _found(effect: NamedEffect) -> str:
+    numbers = [f"{name.replace('_', ' ')} {with_sigma(e.value, e.sigma)} {spelt(e.unit)}".rstrip() for name, e in effect.parameters.items()]
+    title = inside(effect.title or effect.name)
+    return f"{title} ({listed(numbers)})" if numbers else title
+
+
+def _quoted(path: str) -> str:
+    return f"'{path}'" if " " in path else path

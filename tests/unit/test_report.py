@@ -1,0 +1,223 @@
+"""The report: written for every verdict, well-formed, sufficient to itself, and true to diagnosis.json."""
+
+import csv
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from report_samples import ODD, VERDICTS, bare, channel, distinction, landing, odd_landing, outcome
+from rich.console import Console
+
+from orchestrator.diagnosis.report import (
+    Distinction,
+    terminal_distinguish,
+    terminal_summary,
+    verdict_sentence,
+    write_distinction,
+    write_report,
+)
+from orchestrator.diagnosis.report.file_names import FileNames
+from orchestrator.diagnosis.report.numbers import chance, number, percent, signed, with_sigma
+from orchestrator.diagnosis.report.plot_dots import missed
+
+VOID = {"meta", "br", "link", "img", "hr"}
+SENTENCES = {
+    "nothing_missing": "Nothing is missing that these data could show.",
+    "effect": "Missing: soil damping at all pads, 98 %. Closes 93 % of the gap on a landing it was not fitted to.",
+    "effects": "Missing: soil damping at all pads and RCS pulse, 96 %. Closes 93 % of the gap on a landing it was not fitted to.",
+    "cannot_tell": (
+        "These data cannot tell soil damping at all pads from inertial drag of the soil: measure penetration.+Z to within 0.20 cm."
+    ),
+    "none_of_my_effects": "Something is missing that is not in the library: pad normal, quadratic in sink rate.",
+    "numerics": "The numerics are not fine enough to judge.",
+    "data_fault": "The data are at fault: rates.yaw stands still for 40 samples.",
+}
+
+
+class Page(HTMLParser):
+    """Checks that every element is closed in turn, and keeps what a reader gets."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.values: list[str] = []
+        self.links: list[str] = []
+        self.texts: list[str] = []
+        self.labels: list[str | None] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "data":
+            self.values.append(given["value"] or "")
+        if tag == "svg":
+            self.labels.append(given.get("aria-label"))
+        self.links += [value or "" for name, value in attrs if name in ("href", "src", "xlink:href")]
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.links += [value or "" for name, value in attrs if name in ("href", "src", "xlink:href")]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open, f"</{tag}> closes nothing"
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(data)
+
+
+def read(path: Path) -> Page:
+    text = path.read_text("utf-8")
+    page = Page(text)
+    assert page.open == []
+    assert re.findall(r"https?:|//[a-z]|@import|<script|url\((?!#)", text) == []
+    assert all(link.startswith(("#", "data:image/")) for link in page.links)
+    return page
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("effect")
+    write_report(folder, outcome("effect"), [landing("a"), landing("b/c +Z", "holdout")])
+    return folder
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_every_verdict_has_its_sentence_first_and_a_page(verdict: str, tmp_path: Path) -> None:
+    assert verdict_sentence(outcome(verdict)) == SENTENCES[verdict]
+    page = read(write_report(tmp_path, outcome(verdict), []))
+    text = "".join(page.texts).replace("\u00a0", " ")
+    assert SENTENCES[verdict] in text
+    assert "orchestrator " in text
+    assert "prove" not in text
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_missing_numbers_and_odd_names_harm_no_page(verdict: str, tmp_path: Path) -> None:
+    page = read(write_report(tmp_path, bare(verdict), [odd_landing(), replace(odd_landing(), kind="holdout")]))
+    assert not re.search(r"\b(nan|None|inf|Undefined)\b", "".join(page.texts))
+    assert ODD in "".join(page.texts)
+    assert {p.parent.name for p in tmp_path.rglob("*.*")} == {tmp_path.name, "courses", "figures"}
+
+
+def test_an_empty_landing_and_no_candidate_still_make_a_page(tmp_path: Path) -> None:
+    empty = replace(outcome("nothing_missing"), candidates=[], where=[], nuisances={}, noise={}, checks={})
+    page = read(write_report(tmp_path, empty, [replace(landing(), channels=[], rest=[], contacts=[])]))
+    assert page.labels == []
+
+
+def test_numbers_of_the_json_stand_in_the_page_in_full(written: Path) -> None:
+    page, tree = read(written / "report.html"), json.loads((written / "diagnosis.json").read_text("utf-8"))
+    numbers = [tree["gap"][key] for key in ("fit_before", "fit_after", "holdout_before", "holdout_after", "closure")]
+    numbers += [tree["simulations"], tree["readings"], tree["seconds"], tree["chi2_null"], tree["adequacy_null"]]
+    for row in tree["candidates"]:
+        numbers += [row[key] for key in ("log_evidence", "chi2", "probability", "adequacy", "holdout_gain") if row[key] is not None]
+    numbers += [e["parameters"]["damping"]["value"] for e in tree["effects"]] + [
+        w[k] for w in tree["where"] for k in ("from_s", "to_s", "sigmas")
+    ]
+    numbers += [tree["nuisances"]["soil.friction"][key] for key in ("value", "pull")] + list(tree["noise"]["rates.yaw"].values())
+    assert {repr(value) for value in numbers} <= set(page.values)
+    assert tree["sentence"] == SENTENCES["effect"]
+
+
+def test_figures_stand_in_the_page_with_words_for_who_cannot_see_them(written: Path) -> None:
+    page = read(written / "report.html")
+    stems = {p.stem for p in (written / "figures").glob("*.png")}
+    assert stems == {"where", "rivals", "nuisances", "rest", "a_rates", "a_attitude", "b-c-+Z_rates", "b-c-+Z_attitude", "b-c-+Z_rest"}
+    assert len(page.labels) == len(stems)
+    assert all(label and len(label) > 20 for label in page.labels)
+    text = "".join(page.texts)
+    assert all(f"figures/{stem}.png" in text for stem in stems)
+
+
+def test_held_out_landings_have_a_section_of_their_own(written: Path) -> None:
+    text = (written / "report.html").read_text("utf-8")
+    assert text.index("Before and after") < text.index("On landings it was not fitted to") < text.index("The rivals")
+
+
+def test_colours_of_figures_are_left_to_the_page(written: Path) -> None:
+    body = (written / "report.html").read_text("utf-8").split("</style>")[1].lower()
+    assert re.findall(r"#(?:222222|d55e00|0072b2|e6e6e6|b8b8b8)", body) == []
+    assert "dejavu" not in body
+
+
+def test_courses_are_kept_as_csv_in_si(written: Path) -> None:
+    with (written / "courses" / "index.csv").open(encoding="utf-8") as file:
+        index = list(csv.DictReader(file))
+    assert [row["file"] for row in index][:2] == ["a_rates.yaw.csv", "a_rates.pitch.csv"]
+    assert {row["unit"] for row in index} == {"rad/s", "rad", ""}
+    with (written / "courses" / "a_rates.yaw.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    made = channel()
+    assert np.array([float(r["time_s"]) for r in rows]) == pytest.approx(made.times, abs=1e-9)
+    assert [float(r["measured"]) for r in rows if r["measured"]] == pytest.approx(made.data.tolist(), abs=1e-9)
+    assert [float(r["before"]) for r in rows if r["before"]] == pytest.approx(made.before.tolist(), abs=1e-9)
+
+
+def test_names_of_files_are_given_out_once() -> None:
+    names = FileNames()
+    stems = [names.stem("a/b", "+Z"), names.stem("A b", "+z"), names.stem("a", "-Z"), names.stem("../x"), names.stem("")]
+    assert stems == ["a-b_+Z", "A-b_+z_2", "a_-Z", "_-x", "unnamed"]
+
+
+def test_the_terminal_tells_sentence_rivals_gap_where_and_files(tmp_path: Path) -> None:
+    console = Console(record=True, width=140, file=(tmp_path / "out").open("w", encoding="utf-8"))
+    console.print(terminal_summary(outcome("effect"), Path("out")))
+    text = console.export_text()
+    for words in (
+        SENTENCES["effect"],
+        "+812.3",
+        "6.31 → 1.06 σ",
+        "rates.pitch",
+        "orchestrator run out/revised.toml",
+        "3187 landings",
+        "report.html",
+    ):
+        assert words in text
+    for verdict in VERDICTS:
+        console.print(terminal_summary(bare(verdict)))
+        console.print(terminal_summary(outcome(verdict)))
+
+
+def test_distinguish_orders_likeness_and_names_the_sensor(tmp_path: Path) -> None:
+    table = distinction()
+    page = read(write_distinction(tmp_path, table))
+    text = "".join(page.texts)
+    assert "These data could show 2 of 4 effects; 2 of them cannot be told from another." in text
+    assert "Soil damping / Inertial drag" in text
+    assert abs(table.order().index(0) - table.order().index(1)) == 1
+    assert json.loads((tmp_path / "distinguish.json").read_text("utf-8"))["effects"][0]["lambda"] == 2300.5
+    assert (tmp_path / "figures" / "likeness.png").is_file()
+    console = Console(record=True, width=140, file=(tmp_path / "out").open("w", encoding="utf-8"))
+    console.print(terminal_distinguish(table, tmp_path))
+    assert "penetration.+Z" in console.export_text()
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_distinguish_of_few_effects_is_written(count: int, tmp_path: Path) -> None:
+    full = distinction()
+    read(write_distinction(tmp_path, Distinction("s", [], full.effects[:count], full.cosine[:count, :count], [])))
+
+
+def test_numbers_are_written_as_a_person_reads_them() -> None:
+    assert number(41234.5, 4) == "41\u202f230"
+    assert number(-0.01234) == "−0.0123"
+    assert number(float("nan")) == number(None) == "–"
+    assert with_sigma(41234.5, 1312.0) == "41\u202f200 ± 1\u202f300"
+    assert with_sigma(0.0312, 0.0041) == "0.0312 ± 0.0041"
+    assert signed(-4.04) == "−4.0"
+    assert (percent(0.931), percent(0.9999), chance(0.9999), chance(1e-9)) == ("93 %", "100 %", "> 99.9 %", "< 0.1 %")
+
+
+def test_a_value_between_its_bounds_misses_nothing() -> None:
+    stroke, depth = landing().rest
+    assert missed(depth, 0.03) == 0.0
+    assert missed(depth, 0.012) > 0.0 > missed(depth, 0.09)  # type: ignore[operator]
+    assert missed(stroke, 0.1016 + 0.00635) == pytest.approx(-1.0)
+    assert missed(stroke, None) is None
