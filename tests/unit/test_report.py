@@ -23,6 +23,7 @@ from orchestrator.diagnosis.report import (
 from orchestrator.diagnosis.report.file_names import FileNames
 from orchestrator.diagnosis.report.numbers import chance, number, percent, signed, with_sigma
 from orchestrator.diagnosis.report.plot_dots import missed
+from orchestrator.diagnosis.report.template import flat, in_words
 
 VOID = {"meta", "br", "link", "img", "hr"}
 SENTENCES = {
@@ -158,6 +159,14 @@ def test_courses_are_kept_as_csv_in_si(written: Path) -> None:
     assert np.array([float(r["time_s"]) for r in rows]) == pytest.approx(made.times, abs=1e-9)
     assert [float(r["measured"]) for r in rows if r["measured"]] == pytest.approx(made.data.tolist(), abs=1e-9)
     assert [float(r["before"]) for r in rows if r["before"]] == pytest.approx(made.before.tolist(), abs=1e-9)
+
+
+def test_checks_and_terms_are_told_with_their_deviation() -> None:
+    assert flat({"coefficient": {"value": 151234.0, "sigma": 4000.0, "unit": "N.s2/m2"}}) == [
+        ("coefficient", "151\u202f200 ± 4\u202f000 N·s²/m²")
+    ]
+    assert in_words({"largest_shift": 0.04, "rivals": ["v", 2], "none": None}) == "largest shift 0.04, rivals v, 2, none –"
+    assert [in_words(value) for value in (True, 1200.0, 3e-9, float("nan"))] == ["yes", "1\u202f200", "3.000e−09", "–"]
 
 
 def test_names_of_files_are_given_out_once() -> None:

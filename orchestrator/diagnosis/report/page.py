@@ -115,12 +115,11 @@ def _section(courses: Sequence[LandingCourses], kind: str, names: FileNames) -> 
         stem = names.stem("rest") if kind == "fit" and landing is chosen[0] else names.stem(landing.name, "rest")
         rows.append((landing.heading, pictures, rest_picture(landing.rest, stem) if landing.rest else None))
     if kind == "fit":
-        return "Before and after", "The landings the search was fitted to.", rows
-    return (
-        "On landings it was not fitted to",
-        "What was found elsewhere is carried over; only what is uncertain of this landing itself is fitted.",
-        rows,
-    )
+        compared = any(c.after is not None for landing in chosen for c in landing.channels)
+        compared = compared or any(value.after is not None for landing in chosen for value in landing.rest)
+        return "Before and after" if compared else "Simulation and data", "The landings the search was fitted to.", rows
+    remark = "What was found elsewhere is carried over; only what is uncertain of this landing itself is fitted."
+    return "On landings it was not fitted to", remark, rows
 
 
 def _save(folder: Path, pictures: Mapping[str, Any]) -> list[str]:

@@ -33,7 +33,8 @@ def course_picture(name: str, landing: LandingCourses, series: str) -> Picture:
     _legend(figure, channels)
     figure.align_ylabels()
     words = [f"{c.channel}: {_distance(c)}" for c in channels]
-    caption = f"{series}. Distance from the data, RMS of the white residual: {'; '.join(words)}. Beneath, residuals in σ: linear in the grey band of ±3, logarithmic outside."
+    caption = f"{series}. Distance from the data, RMS of the white residual: {'; '.join(words)}."
+    caption += " Beneath, residuals in σ: linear in the grey band of ±3, logarithmic outside."
     return Picture(
         name,
         f"{landing.heading}: {series}",

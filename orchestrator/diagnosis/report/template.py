@@ -60,11 +60,15 @@ def flat(tree: Mapping[str, Any], before: str = "") -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
     for key, value in tree.items():
         name = f"{before}, {key}" if before else str(key).replace("_", " ")
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and not _is_estimate(value):
             rows += flat(value, name)
         else:
             rows.append((name, in_words(value)))
     return rows
+
+
+def _is_estimate(value: Mapping[str, Any]) -> bool:
+    return is_known(value.get("value")) and is_known(value.get("sigma"))
 
 
 def in_words(value: Any) -> str:
@@ -72,10 +76,13 @@ def in_words(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if value is None or isinstance(value, (float, np.floating)):
-        return numbers.NONE if not is_known(value) else f"{value:.4g}".replace("-", "−")
+        text = numbers.number(None if value is None else float(value), 4)
+        return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
     if isinstance(value, (list, tuple)):
         return ", ".join(in_words(item) for item in value) or numbers.NONE
     if isinstance(value, Mapping):
+        if _is_estimate(value):
+            return f"{numbers.with_sigma(value['value'], value['sigma'])} {numbers.spelt(str(value.get('unit', '1')))}".rstrip()
         return ", ".join(f"{str(key).replace('_', ' ')} {in_words(item)}" for key, item in value.items()) or numbers.NONE
     return str(value)
 
