@@ -158,6 +158,7 @@ def test_courses_are_kept_as_csv_in_si(written: Path) -> None:
     made = channel()
     assert np.array([float(r["time_s"]) for r in rows]) == pytest.approx(made.times, abs=1e-9)
     assert [float(r["measured"]) for r in rows if r["measured"]] == pytest.approx(made.data.tolist(), abs=1e-9)
+    assert [float(r["time_s"]) for r in rows if r["measured"]] == pytest.approx(made.data_times.tolist(), abs=1e-9)
     assert [float(r["before"]) for r in rows if r["before"]] == pytest.approx(made.before.tolist(), abs=1e-9)
 
 
