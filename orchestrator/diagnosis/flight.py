@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,11 +15,13 @@ from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.landing import RATES, SPIN, Course
 from orchestrator.diagnosis.overlay import overlay
+from orchestrator.diagnosis.places import PLACES
 from orchestrator.diagnosis.recorded import cosimulation_column
-from orchestrator.errors import OrchestratorError
+from orchestrator.errors import OrchestratorError, UnitError
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.master.result import RunResult
-from orchestrator.master.slave import Interface
+from orchestrator.master.slave import Interface, Kind, Value
+from orchestrator.scenario.parameters import checked
 from orchestrator.scenario.read import Tree, merge
 from orchestrator.simulation import Simulation
 
@@ -89,8 +92,11 @@ class CoSimulation:
         final: Sequence[str] = (),
         settings: Tree | None = None,
     ) -> Flight:
-        """values: by address; `clock.` and `time.` are passed over. stop: s since the start of the run, the scenario's own without.
-        columns, final: names as the search has them, or "unit.variable". settings: merged over the scenario, e.g. {"master": {...}}.
+        """values: by address, or "unit.variable"; `clock.` and `time.` are passed over.
+
+        stop      s since the start of the run, the scenario's own without
+        columns   as the search has them, or "unit.variable"; `final` likewise, "peak." before it for the largest magnitude
+        settings  merged over the scenario, e.g. {"master": {...}}
         """
         self.flown += 1
         try:
@@ -105,11 +111,18 @@ class CoSimulation:
         self, values: Mapping[str, ArrayLike], inserts: Sequence[Insert] = (), stop: float | None = None, settings: Tree | None = None
     ) -> Blueprint:
         """The scenario with these values, checked again."""
-        own = {address: value for address, value in values.items() if not address.startswith(_NO_UNIT_S)}
-        tree = merge(overlay(self.addresses, own, inserts), settings or {})
+        own = {name: value for name, value in values.items() if not name.startswith(_NO_UNIT_S)}
+        slots = {name: float(np.asarray(value).ravel()[0]) for name, value in own.items() if self._is_slot(name)}
+        by_address = {name: value for name, value in own.items() if name not in slots}
+        tree = merge(overlay(self.addresses, by_address, inserts), settings or {})
         if stop is not None:
             tree = merge(tree, {"stop_time": self.addresses.blueprint.scenario.table.start_time + stop})
-        return draw_up(read_scenario(self.path, self.overrides, tree), self.path)
+        return with_values(draw_up(read_scenario(self.path, self.overrides, tree), self.path), slots)
+
+    def _is_slot(self, name: str) -> bool:
+        """A unit's name that is no place's: where they are the same, both mean the same number."""
+        unit = name.partition(".")[0]
+        return unit in self.addresses.blueprint.interfaces and unit not in PLACES
 
     def close(self) -> None:
         self.units.close()
@@ -121,6 +134,21 @@ class CoSimulation:
         addresses = Addresses(blueprint)
         also_record(blueprint, needed_columns(addresses, names))
         return self.units.run(blueprint), addresses
+
+
+def with_values(drawn: Blueprint, values: Mapping[str, float]) -> Blueprint:
+    """A copy with other start values ("unit.variable"), each checked against its variable's bounds."""
+    blueprint = copy.copy(drawn)
+    blueprint.values = [dict(given) for given in drawn.values]
+    places = {name: place for place, name in enumerate(drawn.interfaces)}
+    for name, number in values.items():
+        unit, _, variable = name.partition(".")
+        declared = drawn.interfaces[unit].variables.get(variable)
+        if declared is None:
+            raise UnitError(f"{drawn.scenario.where}: unit {unit} has no {variable}")
+        value: Value = number if declared.kind is Kind.REAL else round(number) if declared.kind is Kind.INTEGER else bool(number)
+        blueprint.values[places[unit]][variable] = checked(unit, declared, value)
+    return blueprint
 
 
 def needed_columns(addresses: Addresses, names: Sequence[str]) -> list[str]:

@@ -6,7 +6,6 @@ tenth of the time and move the rates by 0.3 to 0.5 sigma (1.7 mrad/s), more than
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
-from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.addresses import Addresses, Slot
 from orchestrator.diagnosis.effects.effect import Insert
-from orchestrator.diagnosis.flight import LoadedUnits, course_of, needed_columns
+from orchestrator.diagnosis.flight import LoadedUnits, course_of, needed_columns, with_values
 from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.errors import OrchestratorError, UnitError
-from orchestrator.master.slave import Kind, Value
-from orchestrator.scenario.parameters import checked
+from orchestrator.master.slave import Kind
 from orchestrator.scenario.read import Tree, merge
 from orchestrator.scenario.record import matching_outputs
 
@@ -57,7 +55,7 @@ class MasterLander:
         there = self.base[0].interfaces
         asked = dict.fromkeys(name.partition(".")[0] for name in values)
         drawn, addresses = self._drawn(tuple(unit for unit in asked if unit not in there))
-        blueprint = _with_values(drawn, values)
+        blueprint = with_values(drawn, values)
         self._until(blueprint, stop)
         wanted = [f for f in needed_columns(addresses, [*columns, *final]) + _contact_times(addresses) if f]
         blueprint.recorded = matching_outputs(list(dict.fromkeys(wanted)), blueprint.interfaces, "diagnosis")
@@ -96,19 +94,20 @@ class MasterLanderMaker:
         return MasterLander(self.scenario, self.inserts, self.overrides)
 
 
-def _with_values(drawn: Blueprint, values: Mapping[str, float]) -> Blueprint:
-    """A copy with other start values, each checked against its variable's bounds."""
-    blueprint = copy.copy(drawn)
-    blueprint.values = [dict(given) for given in drawn.values]
-    places = {name: place for place, name in enumerate(drawn.interfaces)}
-    for name, number in values.items():
-        unit, _, variable = name.partition(".")
-        declared = drawn.interfaces[unit].variables.get(variable)
-        if declared is None:
-            raise UnitError(f'{unit}.{variable}: no such variable')
-        value: Value = number if declared.kind is Kind.REAL else round(number) if declared.kind is Kind.INTEGER else bool(number)
-        blueprint.values[places[unit]][variable] = checked(unit, declared, value)
-    return blueprint
+def unit_base(addresses: Addresses, inserts: Sequence[Insert] = ()) -> dict[str, float]:
+    """Every numerical parameter of every unit, as `MasterLander.land` takes it: what a search starts from. Of units to be added, too."""
+    interfaces = dict(addresses.blueprint.interfaces)
+    for insert in inserts:
+        added = None if insert.unit in interfaces else addresses.library(insert.fmu)
+        if added is not None:
+            interfaces[insert.unit] = added
+    parameters = [Slot(unit, it.name) for unit, i in interfaces.items() for it in i.of("parameter") if it.kind is not Kind.STRING]
+    return {f"{slot.unit}.{slot.variable}": addresses.number(slot) for slot in parameters}
+
+
+def unit_slots(addresses: Addresses, address: str) -> list[list[str]]:
+    """The units' variables of each component of an address: all in a group get the same number."""
+    return [[f"{slot.unit}.{slot.variable}" for slot in group] for group in addresses.groups(address)]
 
 
 def _contact_times(addresses: Addresses) -> list[str]:

@@ -8,13 +8,19 @@ import pytest
 
 from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.believed import belief_of, without_effect
+from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.effects import load_library
+from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.found_term import FoundTerm, write_effect
 from orchestrator.diagnosis.from_twin import said_by_address
 from orchestrator.diagnosis.landing import RATES, SPIN
+from orchestrator.diagnosis.master_lander import unit_base, unit_slots
 from orchestrator.diagnosis.moves import Move, Named, applied_moves, effect_moves
+from orchestrator.diagnosis.observation import Observation, Reading
 from orchestrator.diagnosis.outcome import Estimate
 from orchestrator.diagnosis.overlay import overlay
+from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.recorded import column, cosimulation_column, twin_column
 from orchestrator.diagnosis.revision import write_landing, write_revision
 from orchestrator.diagnosis.twin_parameters import twin_parameters
@@ -97,6 +103,37 @@ def test_what_the_twin_was_given_comes_back_from_the_units(zupp: Addresses) -> N
     found = {it.name: value for name, values in back.items() if name in vectors for it, value in zip(vectors[name], values, strict=True)}
     assert {name: found[name] for name in given} == given
     assert back["sensor.time_constant"] == [0.05]
+
+
+def test_a_fit_is_flown_with_its_effect_or_without_it(zupp: Addresses) -> None:
+    watched = Observation([], [Reading("stroke.+Z", "stroke", 0.0, 0.01)])
+    landings = Landings([watched, watched], [{"mass": 7063.5, "pitch_start": 0.02}, {"mass": 7000.0}], [1.0, 1.0])
+    slip = tuple((f"soil.friction[{k}]", 1.0) for k in (1, 2, 3, 4))
+    pitch = Coordinate("pitch", (("pitch_start", 1.0),), 0.01, landing=0)
+    coordinates = (pitch, Coordinate("friction", slip, 0.1, mean=0.33, operation="set"))
+    nothing = np.zeros((2, 2))
+    fit = Fit(coordinates, np.array([1.0, -0.3]), np.array([0.1, 0.2]), np.zeros(2), nothing, nothing, 0.0)
+    whole, bare = belief_of(zupp, "friction", [(landings, fit)]), without_effect(zupp, "friction", [(landings, fit)], 1)
+    np.testing.assert_allclose(whole.values[0]["body.pitch_start"], [0.03])
+    np.testing.assert_allclose(whole.values[1]["soil.friction"], [0.3] * 4)
+    assert [float(row[0]) for row in whole.predicted if row is not None] == [0.1, 0.2]
+    assert bare.values[0].keys() == {"body.pitch_start"}
+    assert bare.values[1] == {"body.mass": [7000.0], "gear.vehicle_mass": [7000.0] * 4}
+
+
+def test_a_search_through_the_master_speaks_of_units(zupp: Addresses) -> None:
+    insert = EFFECTS["ground_effect"].insert
+    assert insert is not None
+    base = unit_base(zupp, [insert])
+    assert base["soil-Z.friction"] == 0.33
+    assert base["plume.height"] == 1.0
+    assert unit_slots(zupp, "soil.friction") == [[f"soil{leg}.friction" for leg in ("+Z", "+Y", "-Z", "-Y")]]
+    landings = Landings([Observation([], [])], [base], [1.0])
+    coordinates = (Coordinate("share", (("plume.share", 1.0),), 0.2), Coordinate("friction", (("soil-Z.friction", 1.0),), 0.1))
+    nothing = np.zeros((0, 2))
+    fit = Fit(coordinates, np.array([1.0, 0.5]), np.zeros(0), np.zeros(0), nothing, nothing, 0.0)
+    values = belief_of(zupp, "both", [(landings, fit)], [insert]).values[0]
+    assert values == {"plume.share": [0.2], "soil-Z.friction": [0.38]}
 
 
 def test_what_the_scenario_has_anyway_is_not_said(zupp: Addresses) -> None:

@@ -114,6 +114,13 @@ def test_loaded_units_fly_what_fresh_ones_fly_to_the_bit(zupp: CoSimulation) -> 
     assert all((again.columns[name] == fresh.columns[name]).all() for name in fresh.columns)
 
 
+def test_an_address_and_a_unit_s_own_name_are_the_same_flight(zupp: CoSimulation) -> None:
+    flights = [zupp.fly({name: 0.5}, stop=0.1).course for name in ("soil[-Z].friction", "soil-Z.friction", "soil[+Z].friction")]
+    columns = [np.concatenate(list(it.columns.values())) for it in flights if it is not None]
+    assert (columns[0] == columns[1]).all()
+    assert not (columns[0] == columns[2]).all()
+
+
 def test_what_cannot_be_flown_says_why_and_the_next_flight_is_as_before(zupp: CoSimulation) -> None:
     before = zupp.fly({}, stop=0.1).course
     refused = zupp.fly({"body.mass": -1.0}, stop=0.1)
