@@ -94,7 +94,7 @@ class CoSimulation:
     ) -> Flight:
         """values: by address, or "unit.variable"; `clock.` and `time.` are passed over.
 
-        stop      s since the start of the run, the scenario's own without
+        stop      s since first contact; without it, or where the scenario does not solve its start, its own end stands
         columns   as the search has them, or "unit.variable"; `final` likewise, "peak." before it for the largest magnitude
         settings  merged over the scenario, e.g. {"master": {...}}
         """
@@ -115,8 +115,9 @@ class CoSimulation:
         slots = {name: float(np.asarray(value).ravel()[0]) for name, value in own.items() if self._is_slot(name)}
         by_address = {name: value for name, value in own.items() if name not in slots}
         tree = merge(overlay(self.addresses, by_address, inserts), settings or {})
-        if stop is not None:
-            tree = merge(tree, {"stop_time": self.addresses.blueprint.scenario.table.start_time + stop})
+        table = self.addresses.blueprint.scenario.table
+        if stop is not None and table.start is not None:
+            tree = merge(tree, {"stop_time": table.start_time + stop})
         return with_values(draw_up(read_scenario(self.path, self.overrides, tree), self.path), slots)
 
     def _is_slot(self, name: str) -> bool:

@@ -9,7 +9,8 @@ from typing import Any, Literal
 
 import tomli_w
 
-from orchestrator.diagnosis.effects.effect import Effect, Insert
+from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.effects.effect import ConnectionTable, Effect, Insert
 from orchestrator.diagnosis.effects.library import load_effect
 from orchestrator.diagnosis.moves import Named
 from orchestrator.diagnosis.outcome import Estimate
@@ -82,3 +83,11 @@ def write_effect(folder: Path, term: FoundTerm) -> Path:
     path.write_text(head + tomli_w.dumps(term.table()), encoding="utf-8")
     load_effect(path)
     return path
+
+
+def body_term_insert(addresses: Addresses) -> Insert:
+    """The unit that a term on the body is: fed with the body's motion, and with the thrust where there is an engine."""
+    connections = [ConnectionTable(ports=["body.body", "body_term.body"]), ConnectionTable(ports=["body_term.effect", "body.effect4"])]
+    if addresses.units("guidance"):
+        connections.append(ConnectionTable.model_validate({"from": "guidance.engine.thrust", "to": "body_term.engine.thrust"}))
+    return Insert(unit="body_term", fmu="BodyTerm", connections=connections)
