@@ -1,0 +1,229 @@
+"""The sealed cases: made again from a seed, out of the diagnosis' reach, and scored by rules that hand-made verdicts follow."""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
+
+from sealed import diagnoses, report, scoring, sealing, targets
+from sealed.energy import energy, scaled_to
+from sealed.hidden import Signatures
+from sealed.kinds import SHARES, counts, plans
+from sealed.make import made, make, scenes_of
+from sealed.vehicle import LIBRARY, ZUPP, Vehicle
+from sealed.wilson import wilson
+
+from orchestrator.diagnosis.landing import TwinLander
+from orchestrator.diagnosis.measured import read_measured
+
+
+@pytest.fixture(scope="module")
+def vehicle() -> Vehicle:
+    return Vehicle()
+
+
+@pytest.fixture(scope="module")
+def lander(vehicle: Vehicle) -> Iterator[TwinLander]:
+    lander = vehicle.lander()
+    yield lander
+    lander.close()
+
+
+# Making
+
+
+def test_a_set_is_the_same_from_the_same_seed(vehicle: Vehicle, tmp_path: Path) -> None:
+    plan = plans(1, 7, ("null coloured",))[0]
+    keys = [made(vehicle, plan, 7, tmp_path / name) for name in ("a", "b")]
+    assert {k: v for k, v in keys[0].items() if k != "salt"} == {k: v for k, v in keys[1].items() if k != "salt"}
+    files = sorted(path.relative_to(tmp_path / "a") for path in (tmp_path / "a").rglob("*.*"))
+    assert len(files) == 6
+    assert all((tmp_path / "a" / it).read_bytes() == (tmp_path / "b" / it).read_bytes() for it in files)
+
+
+def test_what_is_handed_over_reads_and_is_near_the_truth(vehicle: Vehicle, tmp_path: Path) -> None:
+    plan = plans(1, 8, ("null white",))[0]
+    key = made(vehicle, plan, 8, tmp_path)
+    for name in ("fit", "holdout"):
+        measured = read_measured(tmp_path / name)
+        assert {it.name for it in measured.series} == {"rates", "attitude"}
+        assert len(measured.values) == 20
+        rates = next(it for it in measured.series if it.name == "rates")
+        n = len(rates.times)
+        clean = np.array(key[name]["clean"])[: 3 * n].reshape(3, n)
+        order = [rates.channels.index(f"rates.{axis}") for axis in ("yaw", "pitch", "roll")]
+        assert np.std(rates.values[:, order].T - clean) == pytest.approx(0.0017, rel=0.2)
+
+
+def test_kinds_add_up_and_their_order_says_nothing() -> None:
+    assert sum(SHARES.values()) == pytest.approx(1.0)
+    assert sum(counts(37).values()) == 37
+    kinds = [plan.kind for plan in plans(100, 1)]
+    assert kinds != sorted(kinds, key=list(SHARES).index)
+    assert 10 <= sum(plan.path == "units" for plan in plans(100, 1)) <= 40
+
+
+def test_keys_inside_the_set_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="give a folder outside"):
+        make(tmp_path / "set", tmp_path / "set" / "keys", 1, 1)
+
+
+def test_signature_energy_equals_the_dense_formula(vehicle: Vehicle, lander: TwinLander) -> None:
+    plan = plans(1, 9, ("single 25",))[0]
+    signatures = Signatures(vehicle, scenes_of(vehicle, plan, [9, 1, 0])[0], lander)
+    signature = signatures.signature([vehicle.effects["step_-Y"]], [[0.5]])
+    assert signature is not None
+    covariance = np.eye(len(signature)) + signatures.slopes @ signatures.slopes.T
+    dense = signature @ np.linalg.solve(covariance, signature)
+    assert dense > 1.0
+    assert signatures.energy([vehicle.effects["step_-Y"]], [[0.5]]) == pytest.approx(dense, rel=1e-9)
+
+
+def test_nuisances_that_explain_everything_leave_no_energy() -> None:
+    column = np.array([1.0, 2.0, 2.0])
+    assert energy(column, 1e6 * column[:, None]) == pytest.approx(0.0, abs=1e-9)
+    assert energy(column, np.zeros((3, 1))) == 9.0
+
+
+def test_a_size_is_found_for_an_energy_or_refused() -> None:
+    found = scaled_to(25.0, lambda k: 40.0 * k**2 / (1.0 + k), 3.0)
+    assert found is not None
+    assert found[1] == pytest.approx(25.0, rel=0.05)
+    assert scaled_to(25.0, lambda k: k**2, 3.0) is None
+    flown = scaled_to(25.0, lambda k: 100.0 * k**2 if k < 1.0 else None, 3.0)
+    assert flown is not None
+    assert flown[0] == pytest.approx(0.5, rel=0.02)
+
+
+# Sealing
+
+PEEK = """
+import json, os, pathlib, sys
+pathlib.Path("out/diagnosis.json").write_text(json.dumps({"verdict": "nothing_missing", "simulations": 3, "seen": sorted(os.environ),
+    "argv": sys.argv, "cwd": os.getcwd(), "here": sorted(os.listdir("."))}))
+if len(sys.argv) > 1:
+    open(sys.argv[1]).read()
+"""
+
+
+def diagnosed(tmp_path: Path, *arguments: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """A stand-in for the diagnosis, run as a real one: its record and what it wrote."""
+    for name in ("fit", "holdout"):
+        (tmp_path / "set" / "cases" / "000" / name).mkdir(parents=True)
+    (tmp_path / "keys").mkdir()
+    (tmp_path / "keys" / "000.json").write_text("{}")
+    (tmp_path / "peek.py").write_text(PEEK)
+    command = (sys.executable, str(tmp_path / "peek.py"), *arguments)
+    assert diagnoses.run(tmp_path / "set", tmp_path / "results", sealing.Diagnosis(ZUPP, LIBRARY, 0, command), 1) == []
+    place = tmp_path / "results" / "000"
+    return json.loads((place / "run.json").read_text()), json.loads((place / "diagnosis.json").read_text())
+
+
+def test_a_diagnosis_is_told_nothing_of_the_set_and_opens_no_key(tmp_path: Path) -> None:
+    record, said = diagnosed(tmp_path)
+    assert record["watched"]
+    assert record["simulations"] == 3
+    assert scoring.opened_keys(record, tmp_path / "keys") == []
+    assert not any(str(tmp_path / "set") in path for path in record["opened"])
+    assert set(said["here"]) <= {"fit", "holdout", "out", "opened.txt"}
+    assert str(tmp_path) not in said["cwd"]
+    assert set(said["seen"]) <= {*sealing.KEPT, "PYTHONPATH", "SEALED_OPENED", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "LC_CTYPE", "PWD"}
+    assert diagnoses.missing(tmp_path / "set", tmp_path / "results") == []
+
+
+def test_a_diagnosis_that_opens_a_key_is_void(tmp_path: Path) -> None:
+    record, _ = diagnosed(tmp_path, str(tmp_path / "keys" / "000.json"))
+    assert scoring.opened_keys(record, tmp_path / "keys") == [str(tmp_path / "keys" / "000.json")]
+    with pytest.raises(report.UnsealedError, match="is void"):
+        report.scores_of(tmp_path / "keys", tmp_path / "results", recompute=False)
+
+
+# Scoring
+
+
+def key(kind: str = "single 49", *names: str) -> dict[str, Any]:
+    effect = {"port": "soil.normal", "fixed": {"soil.normal_term_rate": 2.0}, "parameters": {"x": 2.0}, "prior": {"x": 1.0}}
+    return {"kind": kind, "lambda": 49.0, "effects": [{"name": name, **effect} for name in names]}
+
+
+def named(*names: str, probability: float = 0.95) -> dict[str, Any]:
+    parameters = {"x": {"value": 2.2, "sigma": 0.1, "unit": "1"}}
+    effects = [{"name": name, "probability": probability, "parameters": parameters} for name in names]
+    return {"verdict": "effect" if len(names) == 1 else "effects", "effects": effects, "gap": {"closure": 0.9}, "simulations": 5}
+
+
+@pytest.mark.parametrize(
+    ("said", "answer"),
+    [
+        (named("a"), "right"),
+        (named("b"), "wrong"),
+        (named("a", "b"), "wrong"),
+        ({"verdict": "cannot_tell", "cannot_tell": {"names": ["b", "a"]}}, "set"),
+        ({"verdict": "cannot_tell", "cannot_tell": {"names": ["b", "c"]}}, "wrong set"),
+        ({"verdict": "cannot_tell"}, "abstained"),
+        ({"verdict": "none_of_my_effects"}, "refused"),
+        ({"verdict": "nothing_missing"}, "nothing"),
+        ({"verdict": "numerics"}, "unjudged"),
+        (None, "unjudged"),
+    ],
+)
+def test_every_verdict_is_one_answer(said: dict[str, Any] | None, answer: str) -> None:
+    assert scoring.scored("000", key("single 49", "a"), said).answer == answer
+
+
+def test_pairs_are_right_together_and_in_a_set() -> None:
+    both = key("two", "a", "b")
+    assert scoring.scored("0", both, named("b", "a")).answer == "right"
+    assert scoring.scored("0", both, named("a")).hits == 1
+    assert scoring.scored("0", both, {"verdict": "cannot_tell", "cannot_tell": {"names": ["a + c", "b + a"]}}).answer == "set"
+
+
+def test_parameters_are_compared_in_prior_and_stated_sigma() -> None:
+    score = scoring.scored("0", key("single 49", "a"), named("a"))
+    assert score.errors["a.x"] == pytest.approx(0.1)
+    assert score.pulls["a.x"] == pytest.approx(2.0)
+
+
+def test_a_law_outside_the_library_is_known_by_port_and_exponents() -> None:
+    law = key("outside", "law")
+    term = {"port": "soil.normal", "fixed": {"soil.normal_term_rate": 2, "soil.normal_term_depth": 0}}
+    other = {"port": "soil.normal", "fixed": {"soil.normal_term_rate": 1}}
+    found = scoring.scored("0", law, {"verdict": "none_of_my_effects", "term": term})
+    assert (found.port, found.form) == (True, True)
+    in_class = scoring.scored("0", law, {"verdict": "none_of_my_effects", "term": {**other, "rivals": [term]}})
+    assert (in_class.port, in_class.form) == (True, True)
+    wrong = scoring.scored("0", law, {"verdict": "none_of_my_effects", "term": other})
+    assert (wrong.port, wrong.form) == (True, False)
+
+
+@pytest.mark.parametrize(
+    ("hits", "n", "low", "high"),
+    # Newcombe (1998), Statistics in Medicine 17, 857, table I, method 3
+    [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718), (29, 29, 0.8830, 1.0)],
+)
+def test_wilson_bounds_are_those_published(hits: int, n: int, low: float, high: float) -> None:
+    assert wilson(hits, n) == pytest.approx((low, high), abs=5e-5)
+
+
+def test_the_table_has_every_target_and_says_what_was_met(tmp_path: Path) -> None:
+    nothing = {"verdict": "nothing_missing", "simulations": 9}
+    scores = [scoring.scored("0", key("null white"), nothing, {"seconds": 60.0}), scoring.scored("1", key("null white"), named("a"))]
+    scores += [scoring.scored("2", key("single 49", "a"), named("a")), scoring.scored("3", key("decoy"), nothing)]
+    rows = {row["on sealed cases"]: row for row in targets.table(scores)}
+    assert len(rows) == len(targets.TARGETS) + 3
+    assert (rows["false alarm on nulls, white noise"]["figure"], rows["false alarm on nulls, white noise"]["met"]) == (0.5, "missed")
+    assert rows["right name at λ 49"]["met"] == "met"
+    assert rows["decoys given a name"]["met"] == "met"
+    assert rows["two effects: both"]["met"] == "no case"
+    assert rows["named with probability 0.9 or more and right"]["n"] == 2
+    assert [row["case"] for row in targets.confusion(scores)] == ["1"]
+    (tmp_path / "keys").mkdir()
+    text = report.report(scores, tmp_path / "keys", tmp_path)
+    assert "| right name at λ 49 | at least 0.92 | 1 | 1" in text
+    assert (tmp_path / report.CURVE).stat().st_size > 5000
