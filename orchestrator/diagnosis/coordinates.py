@@ -37,6 +37,8 @@ class Coordinate:
     landing: int = SHARED
     step: float = 0.1
     """Of z, for differences."""
+    fixed: tuple[tuple[str, float], ...] = ()
+    """Variables that are set along with it, whatever z is: which term, when a pulse begins."""
 
     def value(self, z: float) -> float:
         """p of a z, within its limits."""
@@ -57,6 +59,7 @@ def applied(base: Mapping[str, float], coordinates: Sequence[Coordinate], z: Arr
         if coordinate.landing not in (SHARED, landing):
             continue
         p = coordinate.value(number)
+        values.update(coordinate.fixed)
         for name, factor in coordinate.slots:
             now = values.get(name, base.get(name, 0.0))
             if coordinate.operation == "add":

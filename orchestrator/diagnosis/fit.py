@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
 from orchestrator.diagnosis.coordinates import Coordinate, clipped
-from orchestrator.diagnosis.problem import Model
+from orchestrator.diagnosis.problem import FELT, Model
 
 Array = NDArray[np.float64]
 REACH = 2.5  # of one step in any z
-ENOUGH = 0.05  # of φ: a step that promises less is not made
+ENOUGH = 0.3  # of φ: a step that promises less is lost in what the integrator leaves to chance; Laplace credits it unflown
 TRIES = 3  # of a step, each 0.35 times the last
+CHANCE = 2.0  # of φ: what the integrator may hide of a step
 POOR = 0.3  # of what was promised: the slopes are no longer those of this place
 
 
@@ -78,21 +79,20 @@ def gauss_newton_step(jacobian: Array, residual: Array, z: Array, coordinates: S
 def log_evidence(coordinates: Sequence[Coordinate], z: Array, residual: Array, jacobian: Array) -> float:
     """Laplace: ln ∫ exp(-φ) over the prior, less the constant that all hypotheses share.
 
-    The optimum is taken from the quadratic model, beyond a limit z >= 0 too; each half-normal prior then counts with
-    2 Φ(ẑ/σ_z), which is 2 well inside and goes to the one-sided integral at the limit.
+    What the quadratic model still promises is credited up to ENOUGH, no more: it was not flown. A half-normal prior counts with
+    2 exp(u²/2) Φ(u), u the distance of the limit z = 0 in standard deviations (negative where the optimum lies beyond it).
     """
     hessian = jacobian.T @ jacobian + np.eye(len(z))
     slope = jacobian.T @ residual - z
-    covariance = np.linalg.inv(hessian)
-    step = covariance @ slope
     positive = np.array([c.positive for c in coordinates], dtype=bool)
-    at_limit = positive & (z <= 1e-9)
-    if not at_limit.any() and float(np.abs(step).max(initial=0.0)) > 1.0:
-        step = np.zeros_like(step)  # not converged: no credit for a gain that was never flown
-    gain = 0.5 * float(slope @ step)
-    total = -0.5 * float(residual @ residual + z @ z) + gain - 0.5 * float(np.linalg.slogdet(hessian)[1])
+    stuck = positive & (z <= 1e-9) & (slope < 0.0)
+    free = ~stuck
+    promise = 0.5 * float(slope[free] @ np.linalg.solve(hessian[np.ix_(free, free)], slope[free])) if free.any() else 0.0
+    total = -0.5 * float(residual @ residual + z @ z) + min(promise, ENOUGH) - 0.5 * float(np.linalg.slogdet(hessian)[1])
+    spread = np.sqrt(np.diag(np.linalg.inv(hessian)))
     for i in np.flatnonzero(positive):
-        total += np.log(2.0) + float(log_ndtr((z[i] + step[i]) / np.sqrt(covariance[i, i])))
+        u = float(slope[i] * spread[i] if stuck[i] else z[i] / spread[i])
+        total += np.log(2.0) + float(log_ndtr(u)) + (0.5 * u * u if stuck[i] else 0.0)
     return total
 
 
@@ -127,12 +127,14 @@ def fitted(
         promised = _objective(residual, z, temper) - _objective(residual - jacobian @ step, z + step, temper)
         if promised < ENOUGH:
             break
-        made = _made(model, z, predicted, slopes, step, _objective(residual, z, temper), temper)
+        made = _made(model, z, predicted, slopes, step, _objective(residual, z, temper), temper, promised)
         gained = 0.0
         if made is not None:
             gained = _objective(residual, z, temper) - _objective(made[2], made[0], temper)
             z, predicted, residual = made
         if gained < POOR * promised:
+            if made is None and promised < CHANCE:
+                break
             if renewals == 0 or not renew:
                 if made is None:
                     break
@@ -142,13 +144,14 @@ def fitted(
     return seen_from(model, z, predicted, slopes)
 
 
-def _made(model: Model, z: Array, predicted: Array, slopes: Array, step: Array, now: float, temper: float) -> tuple[Array, Array, Array] | None:
+def _made(model: Model, z: Array, predicted: Array, slopes: Array, step: Array, now: float, temper: float, promised: float) -> tuple[Array, Array, Array] | None:
     """The step, or a part of it, that lowers φ: point, prediction, residual. Whatever was flown teaches the slopes."""
-    for _ in range(TRIES):
+    for _ in range(TRIES if promised > CHANCE else 1):
         there = model.predict(z + step)
         if there is not None:
-            broyden(slopes, step, there - predicted)
             residual = model.residual(there)
+            if float(np.linalg.norm(residual - model.residual(predicted))) > FELT:  # a smaller change is mostly the integrator's
+                broyden(slopes, step, there - predicted)
             if _objective(residual, z + step, temper) < now:
                 return z + step, there, residual
         step = 0.35 * step

@@ -50,6 +50,8 @@ class Reading:
     low: float = -np.inf
     high: float = np.inf
     interval: bool = False
+    kind: str = "rest"
+    """rest: of `Course.final`; peak: the largest magnitude of a column, with its sign; time: an instant of the data's clock."""
 
 
 class Observation:
@@ -60,8 +62,9 @@ class Observation:
         self.shift = 0.0
         """s: time of the data at first contact, as first guessed; a coordinate refines it."""
         self.set_noise([Noise(t.sigma, t.colour or 0.0, _interval(t.times)) for t in self.tracks])
-        self.columns = tuple(dict.fromkeys(t.column for t in self.tracks if not t.column.startswith("telemetry.")))
-        self.final = tuple(dict.fromkeys(r.column for r in self.readings))
+        peaks = [r.column for r in self.readings if r.kind == "peak"]
+        self.columns = tuple(dict.fromkeys(c for c in (*(t.column for t in self.tracks), *peaks) if not c.startswith("telemetry.")))
+        self.final = tuple(dict.fromkeys(r.column for r in self.readings if r.kind != "peak"))
         self.places = _places([len(t.times) for t in self.tracks] + [1] * len(self.readings))
 
     @property
@@ -90,7 +93,7 @@ class Observation:
     def predicted(self, course: Course, values: Mapping[str, float]) -> Array:
         """The numbers that this course would have left, in their own units; intervals give their final value."""
         rows = [self._track(t, course, values) for t in self.tracks]
-        return np.concatenate([*rows, np.array([course.final[r.column] for r in self.readings])])
+        return np.concatenate([*rows, np.array([self._read(r, course, values) for r in self.readings])])
 
     def residual(self, predicted: Array) -> Array:
         """White residual: data less prediction, in standard deviations. An interval counts only outside its ends."""
@@ -113,6 +116,13 @@ class Observation:
     def raw(self, predicted: Array, place: int) -> Array:
         """Data less prediction of one track in its own unit."""
         return self.tracks[place].readings - predicted[self.places[place]]
+
+    def _read(self, reading: Reading, course: Course, values: Mapping[str, float]) -> float:
+        if reading.kind == "peak":
+            column = course.columns[reading.column]
+            return float(column[np.argmax(np.abs(column))])
+        late = self.shift + values.get(ORIGIN, 0.0) if reading.kind == "time" else 0.0
+        return course.final[reading.column] + late
 
     def _track(self, track: Track, course: Course, values: Mapping[str, float]) -> Array:
         late = self.shift + values.get(ORIGIN, 0.0) + values.get(CLOCK + track.series, 0.0)

@@ -18,6 +18,8 @@ from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.observation import Observation
 
 Array = NDArray[np.float64]
+FELT = 3.0  # standard deviations over all rows: six times what the integrator leaves to chance
+WIDEST = 0.5  # of z
 
 
 @dataclass
@@ -77,21 +79,27 @@ class Model:
         return np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None]
 
     def slope(self, i: int, z: Array, predicted: Array) -> Array:
-        """Derivative of the prediction by z_i, by a difference away from the nearer limit."""
+        """Derivative of the prediction by z_i, by a difference that is felt: of at least FELT standard deviations in all, or of z = WIDEST."""
         low, high = self.coordinates[i].bounds
         step = self.coordinates[i].step
-        if z[i] + step > high and z[i] - step >= low:
-            step = -step
+        slope = np.zeros(len(predicted))
+        while True:
+            sign = -1.0 if z[i] + step > high and z[i] - step >= low else 1.0
+            found = self._difference(i, z, predicted, sign * step)
+            found = self._difference(i, z, predicted, -sign * step) if found is None and z[i] - step >= low else found
+            if found is None:
+                return slope
+            slope = found
+            felt = float(np.linalg.norm(self.whitened(slope[:, None], predicted))) * step
+            if felt >= FELT or step >= WIDEST:
+                return slope
+            step = min(WIDEST, step * min(8.0, max(2.0, 1.5 * FELT / max(felt, 1e-9))))
+
+    def _difference(self, i: int, z: Array, predicted: Array, step: float) -> Array | None:
         moved = z.copy()
         moved[i] += step
         there = self.predict(moved, (z, predicted))
-        if there is None:
-            moved[i] -= 2.0 * step
-            step = -step
-            there = self.predict(moved, (z, predicted))
-        if there is None:
-            return np.zeros(len(predicted))
-        return (there - predicted) / step
+        return None if there is None else (there - predicted) / step
 
     def slopes(self, z: Array, predicted: Array, which: Sequence[int] | None = None) -> Array:
         """(n, m): derivatives of the prediction by `which` coordinates, all without."""

@@ -16,7 +16,7 @@ from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, joined
 from orchestrator.diagnosis.problem import Landings, Model
-from orchestrator.diagnosis.tasks import Climb, FitAlong, Point, Predict, Refine, Slopes
+from orchestrator.diagnosis.tasks import Climb, FitAt, Point, Predict, Probe, Refine, Slopes
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
@@ -28,7 +28,9 @@ FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
 SECONDS = 6  # second effects fitted beside a first
-INSENSITIVE = 1.0  # norm of a column: below, the hypothesis cannot be felt where it is null, and must be started elsewhere
+PRUNE = 25.0  # of φ at a horizon: who is further behind the best is not flown on
+LEAST = 6  # hypotheses that are flown on all the same
+ALIKE = 8.0  # of φ: two starts of one hypothesis are both flown on within this
 
 
 class UnflyableError(Exception):
@@ -68,7 +70,10 @@ class Search:
     def base(self) -> Fit:
         """The nuisances fitted to the base scenario, climbing from the best of many draws of their priors."""
         climbs = [Climb(self.landings, self.nuisances, z, self.horizons, self.fresh) for z in self._best_draws()]
-        paths = [path for path in self._run("base fit", climbs) if path]
+        together = max(1, min(self.crew.workers, len(climbs)))
+        paths = [path for path in self._run("base fit", climbs[:together]) if path]
+        if len(climbs) > together and not any(explains(path[-1][1].chi2, self.landings.size) for path in paths):
+            paths += [path for path in self._run("base fit", climbs[together:]) if path]
         if not paths:
             raise UnflyableError
         best = min(paths, key=lambda path: path[-1][1].objective)
@@ -92,8 +97,7 @@ class Search:
         """Place in the path of the last horizon that the base scenario still explains (chi-square within three standard deviations)."""
         explained = 0
         for place, fit in enumerate(self.ends):
-            n = float(Model(self.landings, self.nuisances, Nobody(), self.path[place].horizon).weights.sum())
-            if fit.chi2 > n + 3.0 * np.sqrt(2.0 * n):
+            if not explains(fit.chi2, float(Model(self.landings, self.nuisances, Nobody(), self.path[place].horizon).weights.sum())):
                 break
             explained = place
         return explained
@@ -101,36 +105,49 @@ class Search:
     # Hypotheses
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis' own fits: from the base fit, from where the base scenario stops explaining, and from each of its starts."""
+        """Every hypothesis' own fit: from where the base scenario stops explaining the data, horizon by horizon, and from the base fit.
+
+        At each horizon a hypothesis is left behind when its best objective is PRUNE worse than the best one's: φ at the optimum only
+        grows with the horizon, so whoever explains the rest no better than noise can no longer be caught.
+        """
         here = Point(base.z, base.predicted, base.slopes, np.inf)
         launch = self.launch()
-        below = (*self.path[launch:-1], here)
-        early = self.path[launch].z if launch < len(self.path) - 1 else base.z
-        names, tasks = [], []
-        for h in hypotheses:
-            zero = (0.0,) * len(h.coordinates)
-            names.append(h.name)
-            tasks.append(self._along(h, (here,), base.z, zero))
-            if len(below) > 1:
-                for own in [zero, *h.scaled_starts()]:
-                    names.append(h.name)
-                    tasks.append(self._along(h, below, early, own))
-        best = self._best_of(names, self._run("hypotheses", tasks))
-        if len(below) == 1:
-            deaf = [h for h in hypotheses if h.starts and self._deaf(best.get(h.name), h)]
-            tasks = [self._along(h, (here,), base.z, own) for h in deaf for own in h.scaled_starts()]
-            names = [h.name for h in deaf for _ in h.starts]
-            for name, fit in self._best_of(names, self._run("hypotheses", tasks)).items():
-                if name not in best or fit.log_evidence > best[name].log_evidence:
-                    best[name] = fit
+        if launch == len(self.path) - 1 or explains(base.chi2, self.landings.size):
+            return self._fit_close(hypotheses, here)
+        early = self.path[launch].z
+        runners = [(h, np.concatenate([early, own])) for h in hypotheses for own in [np.zeros(len(h.coordinates)), *map(np.array, h.scaled_starts())]]
+        for place in range(launch, len(self.path) - 1):
+            runners = self._ran(runners, self.path[place], steps=3)
+        last = [(h, z) for h, z in runners] + [(h, np.concatenate([base.z, z[len(base.z) :]])) for h, z in runners[:FINALISTS]]
+        tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), here, z, 6, self.fresh) for h, z in last]
+        best = self._best_of([h.name for h, _ in last], self._run("hypotheses", tasks))
+        left = [h for h in hypotheses if h.name not in best]
+        best |= self._best_of([h.name for h in left], self._run("hypotheses", [self._at(h, here, np.zeros(len(h.coordinates))) for h in left]))
         return best
 
-    def _along(self, h: Hypothesis, path: tuple[Point, ...], z: Array, own: tuple[float, ...]) -> FitAlong:
-        return FitAlong(self.landings, (*self.nuisances, *h.coordinates), path, z, own, fresh=self.fresh if len(path) > 1 else ())
+    def _ran(self, runners: list[tuple[Hypothesis, Array]], point: Point, steps: int) -> list[tuple[Hypothesis, Array]]:
+        """Who is still in the race after one horizon, best first, one or two starts of each."""
+        tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), point, z, steps) for h, z in runners]
+        fits = self._run(f"hypotheses to {point.horizon:g} s", tasks)
+        ended = sorted(((fit.objective, i) for i, fit in enumerate(fits) if fit is not None), key=lambda pair: pair[0])
+        kept: list[tuple[Hypothesis, Array]] = []
+        seen: dict[str, list[float]] = {}
+        for objective, i in ended:
+            others = seen.setdefault(runners[i][0].name, [])
+            behind = objective > ended[0][0] + PRUNE and len(seen) > LEAST
+            if behind or len(others) == 2 or (others and (objective > others[0] + ALIKE or objective < others[0] + 0.05)):
+                continue
+            others.append(objective)
+            kept.append((runners[i][0], fits[i].z))
+        return kept
 
-    def _deaf(self, fit: Fit | None, h: Hypothesis) -> bool:
-        own = None if fit is None else fit.jacobian[:, len(self.nuisances) :]
-        return own is None or float(np.linalg.norm(own, axis=0).min()) < INSENSITIVE
+    def _fit_close(self, hypotheses: Sequence[Hypothesis], here: Point) -> dict[str, Fit]:
+        """From the base fit, which explains the data or nearly so, and from beyond what the nuisances may have absorbed."""
+        tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), here, tuple(h.scaled_starts())) for h in hypotheses]
+        return self._best_of([h.name for h in hypotheses], self._run("hypotheses", tasks))
+
+    def _at(self, h: Hypothesis, here: Point, own: Array) -> FitAt:
+        return FitAt(self.landings, (*self.nuisances, *h.coordinates), here, np.concatenate([here.z, own]), 5)
 
     def _best_of(self, names: Sequence[str], fits: Sequence[Fit | None]) -> dict[str, Fit]:
         best: dict[str, Fit] = {}
@@ -154,7 +171,7 @@ class Search:
             return fits
         point = Point(z, predicted, fits[winner].slopes[:, :count], np.inf)
         known = {h.name: h for h in (*hypotheses, NULL)}
-        tasks = [self._along(known[n], (point,), z, tuple(fits[n].z[count:].tolist())) for n in names]
+        tasks = [self._at(known[n], point, fits[n].z[count:]) for n in names]
         better = {}
         for name, fit in zip(names, self._run("back-substitution", tasks), strict=True):
             if fit is not None and fit.objective < fits[name].objective - 0.5:
@@ -177,7 +194,10 @@ class Search:
         best = sorted(linear.values(), key=lambda pair: -pair[0])[:SECONDS]
         best = [pair for pair in best if pair[0] > fit.log_evidence + 1.0]
         here = Point(fit.z, fit.predicted, fit.slopes, np.inf)
-        tasks = [FitAlong(self.landings, (*fit.coordinates, *h.coordinates), (here,), fit.z, (0.0,) * len(h.coordinates), fresh=self.fresh) for _, h in best]
+        tasks = [
+            FitAt(self.landings, (*fit.coordinates, *h.coordinates), here, np.concatenate([fit.z, np.zeros(len(h.coordinates))]), 5, self.fresh)
+            for _, h in best
+        ]
         found = {}
         for (_, h), pair in zip(best, self._run("second effects", tasks), strict=True):
             if pair is not None:
@@ -203,6 +223,11 @@ class Search:
     def _run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
         self.told(stage, "", 0.0)
         return self.crew.run(tasks, lambda done, of: self.told(stage, "", done / of))
+
+
+def explains(chi2: float, count: float) -> bool:
+    """Whether a chi-square over so many rows is within three standard deviations of noise."""
+    return chi2 <= count + 3.0 * float(np.sqrt(2.0 * count))
 
 
 def promised(model: Model, z: Array, predicted: Array, slopes: Array) -> float:

@@ -1,0 +1,59 @@
+"""Whether a fit leaves nothing but noise: its chi-square, and how white its residual is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2 as chi_square
+
+from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.problem import Landings
+
+Array = NDArray[np.float64]
+LAGS = 5
+
+
+@dataclass(frozen=True)
+class Adequacy:
+    """p-values: of the chi-square, of the whiteness of the worst channel (corrected for their number), and of both together."""
+
+    chi2: float
+    freedom: float
+    size: float
+    whiteness: float
+
+    @property
+    def p(self) -> float:
+        """The smaller of the two, corrected for being two."""
+        return min(1.0, 2.0 * min(self.size, self.whiteness))
+
+
+def adequacy(fit: Fit, landings: Landings) -> Adequacy:
+    """Of a fit's residual: freedom is the number of rows less what the fit could follow of them, tr J (J'J + 1)^-1 J'."""
+    followed = float(np.trace(fit.covariance @ (fit.jacobian.T @ fit.jacobian)))
+    counted = np.concatenate([np.concatenate([np.ones(sum(len(t.times) for t in o.tracks)), [float(not r.interval) for r in o.readings]]) for o in landings.observations])
+    freedom = max(float(counted.sum()) - followed, 1.0)
+    size = float(chi_square.sf(fit.chi2, freedom))
+    return Adequacy(fit.chi2, freedom, size, _whiteness(fit, landings))
+
+
+def _whiteness(fit: Fit, landings: Landings) -> float:
+    """Smallest Ljung-Box p-value over the channels, times their number."""
+    found = []
+    for observation, part in zip(landings.observations, landings.parts, strict=True):
+        rows = fit.residual[part]
+        found += [ljung_box(rows[place]) for track, place in zip(observation.tracks, observation.places, strict=False) if len(track.times) > 4 * LAGS]
+    return min(1.0, len(found) * min(found)) if found else 1.0
+
+
+def ljung_box(residual: Array, lags: int = LAGS) -> float:
+    """p-value of no autocorrelation up to `lags` (Ljung and Box 1978)."""
+    n = len(residual)
+    r = residual - residual.mean()
+    variance = float(r @ r)
+    if variance == 0.0:
+        return 1.0
+    q = n * (n + 2.0) * sum((float(r[k:] @ r[:-k]) / variance) ** 2 / (n - k) for k in range(1, lags + 1))
+    return float(chi_square.sf(q, lags))

@@ -1,0 +1,74 @@
+"""When first contact was, by the data's clock; and whether channels were swapped or turned round.
+
+Both ask how the base scenario, flown at the prior mean, would fit if the data were read differently. Rough on purpose: a coordinate refines
+the time, and a swap must be glaring.
+"""
+
+from __future__ import annotations
+
+from itertools import permutations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.landing import Course
+from orchestrator.diagnosis.observation import Observation, sampled
+
+Array = NDArray[np.float64]
+STEP = 0.01  # s, of the clocks tried
+NEAR = 0.06  # s: a clock nearer to zero than this means that the data start at first contact
+CLEAR = 0.7  # of the misfit at zero: another clock must be better than this
+FLOOR = 0.1  # of a channel's own range: how well the base scenario may be expected to fit at all
+SWAPPED = 0.25  # of the misfit as read: a swap must be better than this
+
+
+def first_contact(observation: Observation, course: Course) -> float:
+    """s, the data's time of first contact. Zero where the data's clock fits as it is."""
+    if not observation.tracks:
+        return 0.0
+    first = min(t.times[0] for t in observation.tracks if len(t.times))
+    last = max(t.times[-1] for t in observation.tracks if len(t.times))
+    end = float(course.times[-1])
+    shifts = np.arange(np.floor((first - end) / STEP), np.ceil(last / STEP)) * STEP
+    shifts = np.unique(np.append(shifts[np.abs(shifts - first) < end + last - first], 0.0))
+    costs = np.array([_misfit(observation, course, float(s)) for s in shifts])
+    best = int(np.argmin(costs))
+    at_zero = float(costs[np.argmin(np.abs(shifts))])
+    if abs(float(shifts[best])) < NEAR or costs[best] > CLEAR * at_zero:
+        return 0.0
+    return float(shifts[best])
+
+
+def _misfit(observation: Observation, course: Course, shift: float) -> float:
+    """Mean square distance over the tracks, each in units of its noise and a share of its range; samples far before contact count as free flight."""
+    total, count = 0.0, 0
+    for track in observation.tracks:
+        if len(track.times) == 0:
+            continue
+        there = sampled(course, track.column, track.times - shift)
+        scale = np.hypot(track.sigma, FLOOR * np.ptp(track.readings))
+        total += float(np.square((track.readings - there) / scale).clip(max=100.0).sum())
+        count += len(track.times)
+    return total / max(count, 1)
+
+
+def swapped(observation: Observation, course: Course) -> str:
+    """What is wrong with the axes of a series, if reading them in another order or with another sign fits very much better; else nothing."""
+    for series in dict.fromkeys(t.series for t in observation.tracks):
+        tracks = [t for t in observation.tracks if t.series == series and len(t.times)]
+        if len(tracks) != 3 or any(len(t.times) != len(tracks[0].times) for t in tracks):
+            continue
+        model = np.column_stack([sampled(course, t.column, t.times - observation.shift) for t in tracks])
+        data = np.column_stack([t.readings for t in tracks])
+        scale = np.hypot(tracks[0].sigma, 0.5 * FLOOR * np.ptp(data))
+        costs = {}
+        for order in permutations(range(3)):
+            for signs in product((1.0, -1.0), repeat=3):
+                costs[order, signs] = float(np.square((data[:, order] * np.array(signs) - model) / scale).mean())
+        as_read = costs[(0, 1, 2), (1.0, 1.0, 1.0)]
+        best = min(costs, key=lambda key: costs[key])
+        if costs[best] < SWAPPED * as_read and as_read > 20.0:
+            names = [t.channel for t in tracks]
+            turned = [("-" if s < 0 else "") + names[i] for i, s in zip(best[0], best[1], strict=True)]
+            return f"series {series}: fits {as_read / costs[best]:.0f} times better read as {', '.join(turned)} in place of {', '.join(names)}"
+    return ""

@@ -1,0 +1,220 @@
+"""`orchestrator diagnose`: all stages from folders of measured data to a verdict, a revised scenario and a report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.diagnosis.adequacy import adequacy
+from orchestrator.diagnosis.crew import Crew, Store
+from orchestrator.diagnosis.effects.effect import Effect
+from orchestrator.diagnosis.effects.library import LIBRARY, load_library
+from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hypothesis import NULL, parts_of
+from orchestrator.diagnosis.locate import located
+from orchestrator.diagnosis.measured import faults, read_measured
+from orchestrator.diagnosis.measured.landing import Measured
+from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
+from orchestrator.diagnosis.search import UnflyableError
+from orchestrator.diagnosis.report import verdict_sentence as sentence
+from orchestrator.diagnosis.setup import Setup, set_up
+from orchestrator.diagnosis.signatures import measures_between, not_excited
+from orchestrator.diagnosis.stages import State, align, ask_holdouts, judged, promising, run_search, try_pairs
+from orchestrator.diagnosis.verdict import Judged, Judgement
+from orchestrator.errors import UserError
+from orchestrator.scenario.locate import scenario_folder
+
+Told = Callable[[str, str, float], None]
+PLACE_OF = {"soil.normal": "soil", "soil.tangential": "soil", "soil.shape": "soil", "strut": "gear", "engine": "guidance", "initial": "body"}
+SHOWN = 12  # rivals listed
+
+
+@dataclass
+class Request:
+    """What the user asked for."""
+
+    scenario: Path
+    measured: Sequence[Path]
+    holdout: Sequence[Path] = ()
+    effects: Sequence[Path] = ()
+    out: Path = Path("results/diagnosis")
+    seed: int = 0
+    workers: int = 2
+    overrides: Sequence[str] = ()
+
+
+@dataclass
+class Diagnosis:
+    """The outcome, and what the report and the co-simulation need beyond it."""
+
+    outcome: Outcome
+    setup: Setup | None = None
+    held: Setup | None = None
+    state: State | None = None
+    holdout_fits: dict[str, Fit] = field(default_factory=dict)
+    effects: dict[str, Effect] = field(default_factory=dict)
+    judgement: Judgement | None = None
+
+
+def library(request: Request) -> dict[str, Effect]:
+    """The project's effects and the user's own."""
+    return load_library([_beside_scenarios(LIBRARY.name), *request.effects])
+
+
+def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
+    """The search and its verdict. What is reported of the co-simulation comes later (`prove`)."""
+    began = perf_counter()
+    blueprint = draw_up(read_scenario(request.scenario, request.overrides), request.scenario)
+    measured, held = [read_measured(p) for p in request.measured], [read_measured(p) for p in request.holdout]
+    effects = library(request)
+    outcome = Outcome("nothing_missing", scenario=str(request.scenario), measured=[str(p) for p in request.measured], holdout=[str(p) for p in request.holdout])
+    tolerances = _beside_scenarios("tolerances.toml")
+    setup = set_up(blueprint, measured, effects, tolerances)
+    outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
+    if _faulty(outcome, [*measured, *held]):
+        return Diagnosis(outcome, setup, effects=effects)
+    crew = Crew(setup.make, request.workers, Store(request.out / ".work"))
+    try:
+        return _searched(request, setup, blueprint_of_held(blueprint, held, tolerances), crew, outcome, effects, told, began)
+    finally:
+        crew.close()
+
+
+def blueprint_of_held(blueprint: object, held: Sequence[Measured], tolerances: Path) -> Setup | None:
+    """The held-out landings' own set-up, without effects."""
+    return set_up(blueprint, held, {}, tolerances) if held else None  # type: ignore[arg-type]
+
+
+def _searched(
+    request: Request, setup: Setup, held: Setup | None, crew: Crew, outcome: Outcome, effects: dict[str, Effect], told: Told | None, began: float
+) -> Diagnosis:
+    for one in (setup, held):
+        complaint = align(one, crew) if one is not None else ""
+        if complaint:
+            outcome.verdict, outcome.faults = "data_fault", [{"channel": "", "what": complaint, "from_s": None, "to_s": None}]
+            outcome.sentence = sentence(outcome)
+            return Diagnosis(outcome, setup, held, effects=effects)
+    try:
+        state = run_search(setup, crew, request.seed, told, setup.hypotheses)
+    except UnflyableError:
+        raise UserError(f"{request.scenario}: cannot be flown from the prior means of {', '.join(setup.names)}; check the priors") from None
+    try_pairs(state)
+    holdout_fits: dict[str, Fit] = {}
+    gains: dict[str, tuple[float, float]] = {}
+    names = promising(state)
+    if held is not None and names:
+        holdout_fits, gains = ask_holdouts(state, held, crew, request.seed, names, told)
+    verdicts, judgement = judged(state, gains)
+    diagnosis = Diagnosis(outcome, setup, held, state, holdout_fits, effects, judgement)
+    fill(diagnosis, verdicts, judgement)
+    outcome.simulations = crew.flown
+    outcome.seconds = perf_counter() - began
+    outcome.sentence = sentence(outcome)
+    return diagnosis
+
+
+def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement) -> None:
+    """The outcome's members from the fits."""
+    outcome, state, setup = diagnosis.outcome, diagnosis.state, diagnosis.setup
+    if state is None or setup is None:
+        return
+    null = state.fits[NULL.name]
+    outcome.verdict = judgement.verdict
+    outcome.readings, outcome.chi2_null, outcome.adequacy_null = setup.landings.size, null.chi2, adequacy(null, setup.landings).p
+    known = {v.name: v for v in verdicts}
+    ranked = sorted(known, key=lambda n: -judgement.probabilities[n])
+    outcome.candidates = [_candidate(diagnosis, known[n], judgement) for n in ranked[:SHOWN]]
+    best = state.fits[ranked[0]]
+    if judgement.verdict in ("effect", "effects"):
+        whole = next(n for n in ranked if set(parts_of(n)) == set(judgement.names))
+        best = state.fits[whole]
+        outcome.effects = [_named(diagnosis, n, whole, judgement.probabilities[whole]) for n in judgement.names]
+    if judgement.verdict == "cannot_tell":
+        tracks = measures_between(state, judgement.names)
+        outcome.cannot_tell = CannotTell(list(judgement.names), tracks)
+    if judgement.why:
+        outcome.warnings.append(judgement.why)
+    outcome.not_excited = not_excited(state)
+    ports = {n: (e.port, PLACE_OF.get(e.port, e.port)) for n, e in diagnosis.effects.items()}
+    close = {n: f for n, f in state.fits.items() if n in ports and f.log_evidence > null.log_evidence + 2.0}
+    outcome.where = located(null, setup.landings, close, ports)
+    _fill_gap(diagnosis, best, ranked)
+    _fill_nuisances(outcome, best, state)
+    for observation in setup.landings.observations:
+        for track, noise in zip(observation.tracks, observation.noises, strict=True):
+            outcome.noise[track.channel] = {"stated": track.sigma, "used": noise.sigma, "colour": noise.rho}
+    if state.courses:
+        outcome.events = {f"contact {leg}": state.courses[0].final[f"soil{k}.contact_time"] for k, leg in enumerate(("+Z", "+Y", "-Z", "-Y"), 1)}
+
+
+def _fill_gap(diagnosis: Diagnosis, best: Fit, ranked: Sequence[str]) -> None:
+    outcome, state, setup = diagnosis.outcome, diagnosis.state, diagnosis.setup
+    if state is None or setup is None:
+        return
+    n, null = setup.landings.size, state.fits[NULL.name]
+    gap = Gap(float(np.sqrt(null.chi2 / n)), float(np.sqrt(best.chi2 / n)))
+    before, after, count = null.chi2, best.chi2, n
+    held, chosen = diagnosis.held, next((x for x in ranked if state.fits[x] is best), "")
+    if held is not None and chosen in diagnosis.holdout_fits:
+        count = held.landings.size
+        before, after = diagnosis.holdout_fits[NULL.name].chi2, diagnosis.holdout_fits[chosen].chi2
+        gap.holdout_before, gap.holdout_after = float(np.sqrt(before / count)), float(np.sqrt(after / count))
+    if chosen != NULL.name and before > count:
+        gap.closure = 1.0 - max(after - count, 0.0) / (before - count)
+    outcome.gap = gap
+
+
+def _fill_nuisances(outcome: Outcome, best: Fit, state: State) -> None:
+    spread = np.sqrt(np.diag(best.covariance))
+    for i, c in enumerate(state.search.nuisances):
+        name = c.name if c.landing < 0 else f"{c.name} ({c.landing + 1})"
+        outcome.nuisances[name] = {"value": c.value(float(best.z[i])), "sigma": c.sigma * float(spread[i]), "pull": float(best.z[i])}
+
+
+def _candidate(diagnosis: Diagnosis, one: Judged, judgement: Judgement) -> Candidate:
+    state = diagnosis.state
+    if state is None:
+        raise ValueError("a candidate needs a search")
+    fit, first = state.fits[one.name], len(state.search.nuisances)
+    parameters = {fit.coordinates[i].name: Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in range(first, len(fit.z))}
+    titles = [diagnosis.effects[n].title for n in parts_of(one.name)]
+    p = judgement.probabilities[one.name]
+    return Candidate(one.name, " + ".join(titles) or "Nothing missing", one.log_evidence, fit.chi2, p, one.adequacy, one.holdout_gain, parameters)
+
+
+def _named(diagnosis: Diagnosis, name: str, whole: str, probability: float) -> NamedEffect:
+    state, effect = diagnosis.state, diagnosis.effects[name]
+    if state is None:
+        raise ValueError("a named effect needs a search")
+    fit, place = state.fits[whole], len(state.search.nuisances)
+    for part in parts_of(whole):
+        count = len(diagnosis.effects[part].parameters)
+        if part == name:
+            chosen = range(place, place + count)
+            parameters = {fit.coordinates[i].name: Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in chosen}
+            return NamedEffect(name, effect.title, PLACE_OF.get(effect.port, effect.port), parameters, probability)
+        place += count
+    raise ValueError(f"{name} is not in {whole}")
+
+
+def _faulty(outcome: Outcome, measured: Sequence[Measured]) -> bool:
+    found = [(one, fault) for one in measured for fault in faults(one)]
+    outcome.faults = [
+        {"channel": f"{one.folder.name}: {fault.channel}", "what": fault.what, "from_s": fault.from_s, "to_s": fault.to_s} for one, fault in found
+    ]
+    if found:
+        outcome.verdict = "data_fault"
+        outcome.sentence = sentence(outcome)
+    return bool(found)
+
+
+def _beside_scenarios(name: str) -> Path:
+    """A file or folder of the project's scenarios folder."""
+    folder = scenario_folder() or Path(__file__).resolve().parents[2] / "scenarios"
+    beside = folder / name
+    return beside if beside.exists() else Path(__file__).resolve().parents[2] / "scenarios" / name

@@ -1,0 +1,240 @@
+"""From a scenario, folders of measured data and a library to the search's own terms: landings, nuisances, tolerances, hypotheses."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.blueprint import Blueprint
+from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate
+from orchestrator.diagnosis.effects.effect import Effect, Parameter
+from orchestrator.diagnosis.hypothesis import Hypothesis
+from orchestrator.diagnosis.landing import Lander, TwinLander
+from orchestrator.diagnosis.measured.landing import Measured, Prior, Scalar
+from orchestrator.diagnosis.observation import ORIGIN, Observation, Reading, Track
+from orchestrator.diagnosis.places import CLOCK, TWIN
+from orchestrator.diagnosis.problem import Landings
+from orchestrator.diagnosis.recorded import twin_column
+from orchestrator.diagnosis.twin_parameters import twin_parameters
+from orchestrator.master.slave import Interface, Kind
+from orchestrator.errors import MeasuredError, ScenarioError, UserError
+from orchestrator.scenario.locate import find_fmu
+
+Array = NDArray[np.float64]
+TOLERANCE = 3e-3  # m/s, of the twin's integrator in a search: 0.2 sigma of the rates at most (docs/diagnosis.md)
+LONGEST = 0.02  # s, its longest step
+ORIGIN_SIGMA = 0.005  # s: how well the data's zero is first contact when they say nothing else
+LEAST_EFFECT_STEP, NUISANCE_STEP, TOLERANCE_STEP = 0.08, 0.2, 0.5  # of z, for differences
+
+
+@dataclass(frozen=True)
+class TwinMaker:
+    """Makes the twin's landers, in whatever process."""
+
+    lander: Path
+    sensor: Path
+    base: Mapping[str, float]
+
+    def __call__(self) -> Lander:
+        return TwinLander(self.lander, self.sensor, self.base)
+
+
+@dataclass
+class Setup:
+    """What a search needs."""
+
+    addresses: Addresses
+    make: Callable[[], Lander]
+    base: dict[str, float]
+    """The scenario's values in the lander's names."""
+    landings: Landings
+    names: list[str]
+    """Of the landings."""
+    nuisances: list[Coordinate]
+    tolerances: list[Coordinate]
+    hypotheses: list[Hypothesis]
+    skipped: dict[str, str] = field(default_factory=dict)
+    """Effects that this scenario cannot hold, and why."""
+
+
+def fast_base(addresses: Addresses) -> dict[str, float]:
+    """The twin's values that equal the scenario, for a search. UserError where the twin cannot stand in."""
+    parameters, reason = twin_parameters(addresses)
+    twin = addresses.library(TWIN)
+    if parameters is None or twin is None:
+        raise UserError(f"{addresses.where}: the fast twin cannot stand in for this scenario: {reason}; leave out what is not ours, or build the FMUs")
+    sensor = addresses.library("RateSensor")
+    base = _starts(twin, "") | (_starts(sensor, "sensor.") if sensor else {})
+    for name, values in parameters.items():
+        interface = sensor if name.startswith("sensor.") else twin
+        stem = name.removeprefix("sensor.") if name.startswith("sensor.") else name
+        if interface is None:
+            continue
+        prefix = "sensor." if interface is sensor else ""
+        base |= {prefix + v.name: float(x) for v, x in zip(interface.vectors[stem], values, strict=True)}
+    return base | {"tolerance": TOLERANCE, "longest_step": LONGEST}
+
+
+def _starts(interface: Interface, prefix: str) -> dict[str, float]:
+    """What the unit starts from by itself: effects add to it."""
+    parameters = (v for v in interface.of("parameter") if v.kind is not Kind.STRING)
+    return {prefix + v.name: float(v.start == "true") if v.kind is Kind.BOOLEAN else float(v.start or 0.0) for v in parameters}
+
+
+def maker(addresses: Addresses, base: Mapping[str, float]) -> TwinMaker:
+    """Landers of the twin, from the FMUs that the scenario's own stand beside."""
+    where = f"{addresses.where}: twin"
+    return TwinMaker(find_fmu(TWIN, addresses.folder, where), find_fmu("RateSensor", addresses.folder, where), dict(base))
+
+
+# Coordinates
+
+
+def slots_of(addresses: Addresses, address: str) -> list[list[str]]:
+    """The lander's variables of each component of an address. Nothing where it has none."""
+    if address.startswith(f"{CLOCK}."):
+        return [[address]]
+    names = addresses.twin(address)
+    if not names:
+        return []
+    groups = addresses.groups(address)
+    if len(groups) == 1:
+        return [names]
+    whole = address if "." in address else ""
+    parts = [addresses.twin(f"{whole}[{i + 1}]") for i in range(len(groups))] if whole else [[n] for n in names]
+    return [list(part) for part in parts if part]
+
+
+def nuisances_of(addresses: Addresses, prior: Prior, landing: int, base: dict[str, float]) -> list[Coordinate]:
+    """Coordinates of one prior; its mean becomes the landing's base value."""
+    groups = slots_of(addresses, prior.name)
+    means = np.atleast_1d(prior.mean)
+    if len(groups) != len(means):
+        raise MeasuredError(f"prior.{prior.name}: gives {len(means)} numbers, expects {len(groups)}; give one for each component")
+    sigmas = np.atleast_1d(prior.sigma if prior.sigma is not None else prior.sigma_log)
+    sigmas = np.broadcast_to(sigmas, means.shape)
+    operation = "add" if prior.sigma is not None else "scale"
+    found = []
+    for i, (names, mean, sigma) in enumerate(zip(groups, means.tolist(), sigmas.tolist(), strict=True)):
+        for name in names:
+            base[name] = float(mean)
+        label = prior.name if len(groups) == 1 else f"{prior.name}[{i + 1}]"
+        low = -0.95 * mean if operation == "add" and prior.name in ("soil.friction",) else -np.inf
+        found.append(
+            Coordinate(label, tuple((n, 1.0) for n in names), sigma, operation=operation, low=low, unit=prior.unit, landing=landing, step=NUISANCE_STEP)
+        )
+    return found
+
+
+def tolerances_of(addresses: Addresses, path: Path) -> list[Coordinate]:
+    """The bands of `scenarios/tolerances.toml` that mean something in this scenario."""
+    try:
+        table = tomllib.loads(path.read_text("utf-8"))["tolerances"]
+    except (OSError, KeyError, tomllib.TOMLDecodeError) as error:
+        raise ScenarioError(f"{path}: no table of tolerances ({error}); restore the file") from None
+    found = []
+    for address, entry in table.items():
+        groups = slots_of(addresses, address)
+        slots = tuple((name, 1.0) for group in groups for name in group)
+        if slots and any(float(x) != 0.0 for x in np.atleast_1d(addresses.base_value(address))):
+            found.append(Coordinate(address, slots, float(entry["sigma_log"]), operation="scale", step=TOLERANCE_STEP))
+    return found
+
+
+def hypothesis_of(addresses: Addresses, effect: Effect) -> Hypothesis | str:
+    """The effect in the lander's terms, or why it has none here."""
+    coordinates = []
+    for parameter in effect.parameters:
+        slots: list[tuple[str, float]] = []
+        for sign, address in parameter.signed_targets():
+            groups = slots_of(addresses, address)
+            if not groups:
+                return f"{address} is not in the twin"
+            slots += [(name, sign) for group in groups for name in group]
+        coordinates.append(_coordinate(parameter, tuple(slots), _fixed(addresses, effect)))
+    starts = tuple(tuple(start[p.name] for p in effect.parameters) for start in effect.starts)
+    return Hypothesis(effect.name, tuple(coordinates), starts)
+
+
+def _coordinate(parameter: Parameter, slots: tuple[tuple[str, float], ...], fixed: tuple[tuple[str, float], ...]) -> Coordinate:
+    positive = parameter.prior.shape == "half-normal"
+    low, high = parameter.limits
+    return Coordinate(
+        parameter.name, slots, parameter.prior.sigma, parameter.null, parameter.operation, low, high, positive, parameter.unit, step=LEAST_EFFECT_STEP, fixed=fixed
+    )
+
+
+def _fixed(addresses: Addresses, effect: Effect) -> tuple[tuple[str, float], ...]:
+    found: list[tuple[str, float]] = []
+    for address, value in effect.fixed.items():
+        values = value if isinstance(value, list) else [value]
+        groups = slots_of(addresses, address)
+        for i, group in enumerate(groups):
+            found += [(name, float(values[min(i, len(values) - 1)])) for name in group]
+    return tuple(found)
+
+
+# Observations
+
+
+def observation_of(addresses: Addresses, measured: Measured) -> Observation:
+    """Tracks and readings in the lander's names."""
+    tracks = []
+    for series in measured.series:
+        for i, channel in enumerate(series.channels):
+            column = _column(addresses, channel, f"{measured.folder.name}: series.{series.name}")
+            valid = series.mask[:, i]
+            tracks.append(Track(series.name, channel, column, series.times[valid], series.values[valid, i], float(series.sigma[i]), series.colour))
+    readings = [_reading(addresses, scalar, measured.folder.name) for scalar in measured.values]
+    return Observation(tracks, readings)
+
+
+def _reading(addresses: Addresses, scalar: Scalar, where: str) -> Reading:
+    peak = scalar.name.startswith("peak.")
+    column = _column(addresses, scalar.name.removeprefix("peak."), f"{where}: values.{scalar.name}")
+    interval = scalar.kind == "interval"
+    kind = "peak" if peak else "time" if scalar.name.startswith("contact_time.") else "rest"
+    return Reading(scalar.name, column, scalar.value, scalar.sigma if not interval else 1.0, scalar.low, scalar.high, interval, kind)
+
+
+def _column(addresses: Addresses, channel: str, where: str) -> str:
+    column = twin_column(addresses, channel)
+    if column is None:
+        raise MeasuredError(f"{where}: {channel} is not among the twin's outputs; leave it out, or diagnose a scenario that has it")
+    return column.removeprefix("sensor.")
+
+
+def set_up(blueprint: Blueprint, measured: Sequence[Measured], effects: Mapping[str, Effect], tolerances: Path) -> Setup:
+    """Everything, or one line about what does not fit together."""
+    addresses = Addresses(blueprint)
+    base = fast_base(addresses)
+    bases, observations, nuisances, stops = [], [], [], []
+    for k, one in enumerate(measured):
+        own = dict(base)
+        landing = SHARED if len(measured) == 1 else k
+        for prior in one.prior:
+            nuisances += nuisances_of(addresses, prior, landing, own)
+        nuisances.append(Coordinate(ORIGIN, ((ORIGIN, 1.0),), ORIGIN_SIGMA, unit="s", landing=landing, step=0.5))
+        observation = observation_of(addresses, one)
+        bases.append(own)
+        observations.append(observation)
+        stops.append(blueprint.scenario.table.stop_time)
+    hypotheses, skipped = [], {}
+    for name, effect in effects.items():
+        found = hypothesis_of(addresses, effect)
+        if isinstance(found, str):
+            skipped[name] = found
+        else:
+            hypotheses.append(found)
+    make = maker(addresses, base)
+    landings = Landings(observations, bases, stops)
+    names = [one.folder.name for one in measured]
+    return Setup(addresses, make, base, landings, names, nuisances, tolerances_of(addresses, tolerances), hypotheses, skipped)
+
+

@@ -1,0 +1,191 @@
+"""The stages of a diagnosis as steps over one search: align, fit, judge the noise, try every effect, try pairs, ask the held-out landings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.adequacy import adequacy
+from orchestrator.diagnosis.align import first_contact, swapped
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate
+from orchestrator.diagnosis.crew import Crew
+from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
+from orchestrator.diagnosis.noise import noise_of
+from orchestrator.diagnosis.problem import Landings
+from orchestrator.diagnosis.search import Search, Told
+from orchestrator.diagnosis.setup import Setup
+from orchestrator.diagnosis.tasks import Land
+from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, judge
+
+Array = NDArray[np.float64]
+GRID = 0.01  # s, of courses to look at
+RESTING = 0.006  # rad/s
+SETTLED = 0.15  # s after the last faster instant
+PAIRED_WITH = 2  # singles that second effects are tried beside
+FAR = 0.15  # s: a clock that far off is known to 50 ms, not 5
+CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
+
+
+@dataclass
+class State:
+    """A search with its fits so far."""
+
+    setup: Setup
+    search: Search
+    base: Fit
+    fits: dict[str, Fit] = field(default_factory=dict)
+    hypotheses: list[Hypothesis] = field(default_factory=list)
+    courses: list[Course] = field(default_factory=list)
+
+
+def look(setup: Setup, crew: Crew, coordinates: Sequence[Coordinate], z: Array, landing: int, final: Sequence[str] = ()) -> Course | None:
+    """A landing's course on a fine grid."""
+    grid = np.arange(0.0, setup.landings.stop[landing] + 0.5 * GRID, GRID)
+    task = Land(setup.landings, tuple(coordinates), z, landing, grid, (*RATES, *ATTITUDE), tuple(final))
+    course: Course | None = crew.run([task])[0]
+    return course
+
+
+def align(setup: Setup, crew: Crew) -> str:
+    """Find where the data's clock has first contact, and refuse swapped axes: the complaint, or nothing."""
+    for k, observation in enumerate(setup.landings.observations):
+        course = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k)
+        if course is None:
+            return ""
+        observation.shift = first_contact(observation, course)
+        if abs(observation.shift) > FAR:
+            setup.nuisances[:] = [replace(c, sigma=0.05) if c.name == "time.origin" and c.landing in (SHARED, k) else c for c in setup.nuisances]
+        complaint = swapped(observation, course)
+        if complaint:
+            return f"{setup.names[k]}: {complaint}"
+    setup.landings = Landings(setup.landings.observations, setup.landings.bases, setup.landings.stop)
+    return ""
+
+
+def hear_noise(setup: Setup, crew: Crew, fit: Fit) -> list[Course]:
+    """Set the noise of every track from the stretch at rest; gives the courses of the fit."""
+    courses = []
+    for k, (observation, part) in enumerate(zip(setup.landings.observations, setup.landings.parts, strict=True)):
+        course = look(setup, crew, fit.coordinates, fit.z, k, CONTACTS)
+        if course is None:
+            continue
+        courses.append(course)
+        fast = np.max(np.abs([course.columns[name] for name in RATES]), axis=0) > RESTING
+        rest = float(course.times[np.flatnonzero(fast)[-1]]) + SETTLED if fast.any() else 0.0
+        predicted = fit.predicted[part]
+        observation.set_noise(
+            [
+                noise_of(t.times, observation.raw(predicted, i), t.times - observation.shift > rest, t.sigma, t.colour)
+                for i, t in enumerate(observation.tracks)
+            ]
+        )
+    return courses
+
+
+def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypotheses: Sequence[Hypothesis]) -> State:
+    """Base, every hypothesis, the best refined, null and rivals once more from the winner's nuisances."""
+    search = Search(setup.landings, setup.nuisances, setup.tolerances, crew, seed, told)
+    base = search.base()
+    courses = hear_noise(setup, crew, base)
+    base = search.refine_all([search.renoised(base)], "base fit", everything=True)[0]
+    state = State(setup, search, base, hypotheses=list(hypotheses), courses=courses)
+    state.fits = search.fit_all(hypotheses, base) | {NULL.name: base}
+    state.fits = search.refine_best(state.fits)
+    _substitute(state)
+    _rehear(state, crew)
+    return state
+
+
+def _substitute(state: State) -> None:
+    ranked = _ranked(state)
+    if ranked[0] == NULL.name or state.fits[ranked[0]].log_evidence - state.fits[NULL.name].log_evidence < 2.0:
+        return
+    rivals = [n for n in ranked[1:4] if n != NULL.name]
+    state.fits = state.search.back_substituted(state.fits, state.hypotheses, [NULL.name, *rivals], ranked[0])
+
+
+def _rehear(state: State, crew: Crew) -> None:
+    """The noise judged again by the best fit's residual at rest; all fits seen anew, the best refined under it."""
+    ranked = _ranked(state)
+    before = [n for o in state.setup.landings.observations for n in o.noises]
+    state.courses = hear_noise(state.setup, crew, state.fits[ranked[0]]) or state.courses
+    after = [n for o in state.setup.landings.observations for n in o.noises]
+    if all(abs(np.log(a.sigma / b.sigma)) < 0.05 and abs(a.rho - b.rho) < 0.05 for a, b in zip(after, before, strict=True)):
+        return
+    state.fits = {name: state.search.renoised(fit) for name, fit in state.fits.items()}
+    top = _ranked(state)[:4]
+    top = top if NULL.name in top else [*top, NULL.name]
+    state.fits |= dict(zip(top, state.search.refine_all([state.fits[n] for n in top], "finalists"), strict=True))
+
+
+def try_pairs(state: State) -> None:
+    """Second effects beside the best singles, where one alone is not adequate."""
+    singles = [n for n in _ranked(state) if n != NULL.name][:PAIRED_WITH]
+    known = {h.name: h for h in state.hypotheses}
+    best = state.fits[singles[0]] if singles else state.base
+    if not singles or adequacy(best, state.setup.landings).p >= ADEQUATE:
+        return
+    for name in singles:
+        for pair, (hypothesis, fit) in state.search.fit_seconds(known[name], state.fits[name], state.hypotheses).items():
+            swapped_name = " + ".join(reversed(pair.split(" + ")))
+            if swapped_name not in state.fits:
+                state.fits[pair] = fit
+                state.hypotheses.append(hypothesis)
+
+
+def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list[Judged], Judgement]:
+    """All hypotheses, and the verdict. holdouts: name -> (gain, adequacy)."""
+    null = state.fits[NULL.name].log_evidence
+    found = []
+    for name, fit in state.fits.items():
+        near = fit.log_evidence > max(f.log_evidence for f in state.fits.values()) - 12.0 or name == NULL.name
+        p = adequacy(fit, state.setup.landings).p if near else 0.0
+        gain, held = holdouts.get(name, (None, None))
+        found.append(Judged(name, fit.log_evidence - null, p, gain, held))
+    singles = sum(1 for h in state.hypotheses if " + " not in h.name)
+    return found, judge(found, singles)
+
+
+def posterior_of(fit: Fit, nuisances: int) -> list[Coordinate]:
+    """The fit's own coordinates as a prior for another landing: its estimate with its standard deviation."""
+    found = []
+    for i in range(nuisances, len(fit.z)):
+        c = fit.coordinates[i]
+        value, sigma = fit.estimate(i)
+        found.append(replace(c, mean=value, sigma=max(sigma, 1e-6 * c.sigma), positive=False, step=1.0))
+    return found
+
+
+def ask_holdouts(state: State, held: Setup, crew: Crew, seed: int, names: Sequence[str], told: Told | None = None) -> tuple[dict[str, Fit], dict[str, tuple[float, float]]]:
+    """Fits of nothing missing and of `names` to the held-out landings, each effect known only as the fitted landings left it."""
+    count = len(state.search.nuisances)
+    fits: dict[str, Fit] = {}
+    for name in (NULL.name, *names):
+        own = posterior_of(state.fits[name], count) if name != NULL.name else []
+        search = Search(held.landings, [*held.nuisances, *own], held.tolerances, crew, seed, told)
+        fit = search.base()
+        if name == NULL.name:
+            hear_noise(held, crew, fit)
+        fits[name] = search.renoised(fit)
+    if names:
+        hear_noise(held, crew, fits[names[0]])
+        blank = {n: Search(held.landings, fits[n].coordinates, (), crew, seed) for n in fits}
+        fits = {n: blank[n].renoised(fit) for n, fit in fits.items()}
+    null = fits[NULL.name].log_evidence
+    return fits, {n: (fits[n].log_evidence - null, adequacy(fits[n], held.landings).p) for n in names}
+
+
+def _ranked(state: State) -> list[str]:
+    return sorted(state.fits, key=lambda n: -state.fits[n].log_evidence)
+
+
+def promising(state: State, most: int = 3) -> list[str]:
+    """Effects that might be named: within reach of the best, and above nothing missing."""
+    null = state.fits[NULL.name].log_evidence
+    ranked = [n for n in _ranked(state) if n != NULL.name and state.fits[n].log_evidence - null > BEATS]
+    return [n for n in ranked if state.fits[n].log_evidence > state.fits[ranked[0]].log_evidence - 5.0][:most]

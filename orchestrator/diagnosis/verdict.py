@@ -1,0 +1,97 @@
+"""From fits to a verdict: probabilities of the hypotheses, who is adequate, and when to abstain.
+
+Half of the prior belongs to nothing missing, the other half to the library in equal shares; pairs share a twentieth. The rules are those of
+docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing missing, and a held-out landing that gains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from orchestrator.diagnosis.hypothesis import NULL, parts_of
+from orchestrator.diagnosis.outcome import Verdict
+
+SURE = 0.9
+BEATS = 5.0  # ln evidence above nothing missing
+ADEQUATE = 0.01  # p-value of a residual
+LOST = 1e-3  # p-value below which nothing missing is refused by itself
+TOGETHER = 0.05  # prior of any two effects at once
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is known of one hypothesis."""
+
+    name: str
+    log_evidence: float
+    adequacy: float
+    holdout_gain: float | None = None
+    holdout_adequacy: float | None = None
+
+    @property
+    def stands(self) -> bool:
+        """Adequate here, and on the held-out landings better than nothing missing."""
+        return self.adequacy >= ADEQUATE and (self.holdout_gain is None or (self.holdout_gain > 0.0 and (self.holdout_adequacy or 0.0) >= LOST))
+
+
+def probabilities(hypotheses: Sequence[Judged], singles: int) -> dict[str, float]:
+    """Posterior of each; `singles` is the size of the library."""
+    weights = []
+    pairs = max(sum(len(parts_of(h.name)) == 2 for h in hypotheses), 1)
+    for h in hypotheses:
+        parts = len(parts_of(h.name))
+        prior = 0.5 if parts == 0 else 0.5 * (1.0 - TOGETHER) / max(singles, 1) if parts == 1 else 0.5 * TOGETHER / pairs
+        weights.append(h.log_evidence + log(prior))
+    shifted = np.exp(np.array(weights) - max(weights))
+    return {h.name: float(w) for h, w in zip(hypotheses, shifted / shifted.sum(), strict=True)}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The verdict with the names it is about, most probable first."""
+
+    verdict: Verdict
+    names: tuple[str, ...]
+    probabilities: Mapping[str, float]
+    why: str = ""
+
+
+def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
+    """hypotheses must hold nothing missing; pairs only where singles were inadequate."""
+    found = probabilities(hypotheses, singles)
+    known = {h.name: h for h in hypotheses}
+    null = known[NULL.name]
+    ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
+    best = known[ranked[0]] if ranked else null
+    if best is null or best.log_evidence - null.log_evidence < BEATS or found[NULL.name] > 1.0 - SURE:
+        if null.adequacy < LOST:
+            return Judgement("none_of_my_effects", (), found, "nothing missing is not adequate, and no effect of the library is better by enough")
+        return Judgement("nothing_missing", (), found)
+    credible = _smallest_set(ranked, found)
+    standing = tuple(n for n in credible if known[n].stands)
+    if not standing:
+        if null.adequacy >= LOST and best.adequacy >= ADEQUATE:
+            return Judgement("nothing_missing", (), found, f"{best.name} fits better, but not on the held-out landing")
+        return Judgement("none_of_my_effects", (), found, f"the best of the library, {best.name}, leaves more than noise or fails on the held-out landing")
+    if len(credible) == 1 and standing:
+        return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
+    if len(standing) == 1 and found[standing[0]] >= SURE:
+        return Judgement("effect", parts_of(standing[0]), found)
+    names = tuple(dict.fromkeys(part for n in credible for part in parts_of(n)))
+    return Judgement("cannot_tell", names, found)
+
+
+def _smallest_set(ranked: Sequence[str], found: Mapping[str, float]) -> list[str]:
+    """Names from the top until they hold SURE of what the effects have together."""
+    total = sum(found[n] for n in ranked)
+    chosen, held = [], 0.0
+    for name in ranked:
+        chosen.append(name)
+        held += found[name] / total
+        if held >= SURE:
+            break
+    return chosen
