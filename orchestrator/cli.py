@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
+from orchestrator.diagnosis.command import diagnose
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
@@ -126,6 +127,9 @@ def show(scenario: ScenarioName, overrides: Overrides = None) -> None:
     console = Console()
     for part in overview(draw_up(read_scenario(path, overrides or ()), path)):
         console.print(part)
+
+
+app.command()(diagnose)
 
 
 @app.command("list")

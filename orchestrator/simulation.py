@@ -22,6 +22,7 @@ from orchestrator.scenario.model import StartTable
 from orchestrator.scenario.parameters import SETTABLE
 
 Progress = Callable[[float], None]
+START_TRIES = 4
 
 
 class Simulation:
@@ -121,7 +122,16 @@ class Simulation:
 
         guess = float(self.blueprint.values[unit].get(name, variable.start or 0.0))
         what = f"{', '.join(self.blueprint.scenario.zero)} = {start.value:g} by varying {start.vary}"
+        guess = self._bearable(residual, guess, abs(variable.nominal))
         residual(solve_start(residual, guess, abs(variable.nominal), what))
+
+    def _bearable(self, residual: Callable[[float], float], guess: float, step: float) -> float:
+        """The guess, or the first of a few beyond it at which no unit complains: a pad deep in the ground says nothing of its gap."""
+        for k in range(START_TRIES):
+            residual(guess + k * step)
+            if not any(getattr(slave, "complaint", "") for slave in self.system.slaves):
+                return guess + k * step
+        return guess
 
     def _varied(self, start: StartTable) -> tuple[int, str]:
         where = self.blueprint.scenario.where

@@ -33,7 +33,12 @@ class Adequacy:
 def adequacy(fit: Fit, landings: Landings) -> Adequacy:
     """Of a fit's residual: freedom is the number of rows less what the fit could follow of them, tr J (J'J + 1)^-1 J'."""
     followed = float(np.trace(fit.covariance @ (fit.jacobian.T @ fit.jacobian)))
-    counted = np.concatenate([np.concatenate([np.ones(sum(len(t.times) for t in o.tracks)), [float(not r.interval) for r in o.readings]]) for o in landings.observations])
+    counted = np.concatenate(
+        [
+            np.concatenate([np.ones(sum(len(t.times) for t in o.tracks)), [float(not r.interval) for r in o.readings]])
+            for o in landings.observations
+        ]
+    )
     freedom = max(float(counted.sum()) - followed, 1.0)
     size = float(chi_square.sf(fit.chi2, freedom))
     return Adequacy(fit.chi2, freedom, size, _whiteness(fit, landings))
@@ -44,7 +49,11 @@ def _whiteness(fit: Fit, landings: Landings) -> float:
     found = []
     for observation, part in zip(landings.observations, landings.parts, strict=True):
         rows = fit.residual[part]
-        found += [ljung_box(rows[place]) for track, place in zip(observation.tracks, observation.places, strict=False) if len(track.times) > 4 * LAGS]
+        found += [
+            ljung_box(rows[place])
+            for track, place in zip(observation.tracks, observation.places, strict=False)
+            if len(track.times) > 4 * LAGS
+        ]
     return min(1.0, len(found) * min(found)) if found else 1.0
 
 

@@ -70,5 +70,7 @@ def swapped(observation: Observation, course: Course) -> str:
         if costs[best] < SWAPPED * as_read and as_read > 20.0:
             names = [t.channel for t in tracks]
             turned = [("-" if s < 0 else "") + names[i] for i, s in zip(best[0], best[1], strict=True)]
-            return f"series {series}: fits {as_read / costs[best]:.0f} times better read as {', '.join(turned)} in place of {', '.join(names)}"
+            return (
+                f"series {series}: fits {as_read / costs[best]:.0f} times better read as {', '.join(turned)} in place of {', '.join(names)}"
+            )
     return ""

@@ -51,7 +51,6 @@ class Coordinate:
         return low, (self.high - self.mean) / self.sigma
 
 
-
 def applied(base: Mapping[str, float], coordinates: Sequence[Coordinate], z: Array, landing: int) -> dict[str, float]:
     """Values that differ from a scenario's, in one landing, with the coordinates at z."""
     values: dict[str, float] = {}
@@ -75,4 +74,3 @@ def clipped(coordinates: Sequence[Coordinate], z: Array) -> Array:
     """z within the coordinates' limits."""
     low, high = np.array([c.bounds for c in coordinates]).reshape(-1, 2).T
     return np.clip(z, low, high)
-

@@ -20,8 +20,8 @@ from orchestrator.diagnosis.locate import located
 from orchestrator.diagnosis.measured import faults, read_measured
 from orchestrator.diagnosis.measured.landing import Measured
 from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
-from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.report import verdict_sentence as sentence
+from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
 from orchestrator.diagnosis.stages import State, align, ask_holdouts, judged, promising, run_search, try_pairs
@@ -30,7 +30,14 @@ from orchestrator.errors import UserError
 from orchestrator.scenario.locate import scenario_folder
 
 Told = Callable[[str, str, float], None]
-PLACE_OF = {"soil.normal": "soil", "soil.tangential": "soil", "soil.shape": "soil", "strut": "gear", "engine": "guidance", "initial": "body"}
+PLACE_OF = {
+    "soil.normal": "soil",
+    "soil.tangential": "soil",
+    "soil.shape": "soil",
+    "strut": "gear",
+    "engine": "guidance",
+    "initial": "body",
+}
 SHOWN = 12  # rivals listed
 
 
@@ -46,6 +53,8 @@ class Request:
     seed: int = 0
     workers: int = 2
     overrides: Sequence[str] = ()
+    budget: int = 20000
+    """Landings after which only what the verdict needs is flown: no second effects, no rivals on the held-out landings."""
 
 
 @dataclass
@@ -72,7 +81,12 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
     blueprint = draw_up(read_scenario(request.scenario, request.overrides), request.scenario)
     measured, held = [read_measured(p) for p in request.measured], [read_measured(p) for p in request.holdout]
     effects = library(request)
-    outcome = Outcome("nothing_missing", scenario=str(request.scenario), measured=[str(p) for p in request.measured], holdout=[str(p) for p in request.holdout])
+    outcome = Outcome(
+        "nothing_missing",
+        scenario=str(request.scenario),
+        measured=[str(p) for p in request.measured],
+        holdout=[str(p) for p in request.holdout],
+    )
     tolerances = _beside_scenarios("tolerances.toml")
     setup = set_up(blueprint, measured, effects, tolerances)
     outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
@@ -91,7 +105,14 @@ def blueprint_of_held(blueprint: object, held: Sequence[Measured], tolerances: P
 
 
 def _searched(
-    request: Request, setup: Setup, held: Setup | None, crew: Crew, outcome: Outcome, effects: dict[str, Effect], told: Told | None, began: float
+    request: Request,
+    setup: Setup,
+    held: Setup | None,
+    crew: Crew,
+    outcome: Outcome,
+    effects: dict[str, Effect],
+    told: Told | None,
+    began: float,
 ) -> Diagnosis:
     for one in (setup, held):
         complaint = align(one, crew) if one is not None else ""
@@ -103,10 +124,11 @@ def _searched(
         state = run_search(setup, crew, request.seed, told, setup.hypotheses)
     except UnflyableError:
         raise UserError(f"{request.scenario}: cannot be flown from the prior means of {', '.join(setup.names)}; check the priors") from None
-    try_pairs(state)
+    if crew.flown < request.budget:
+        try_pairs(state)
     holdout_fits: dict[str, Fit] = {}
     gains: dict[str, tuple[float, float]] = {}
-    names = promising(state)
+    names = promising(state, 3 if crew.flown < request.budget else 1)
     if held is not None and names:
         holdout_fits, gains = ask_holdouts(state, held, crew, request.seed, names, told)
     verdicts, judgement = judged(state, gains)
@@ -149,7 +171,9 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
         for track, noise in zip(observation.tracks, observation.noises, strict=True):
             outcome.noise[track.channel] = {"stated": track.sigma, "used": noise.sigma, "colour": noise.rho}
     if state.courses:
-        outcome.events = {f"contact {leg}": state.courses[0].final[f"soil{k}.contact_time"] for k, leg in enumerate(("+Z", "+Y", "-Z", "-Y"), 1)}
+        outcome.events = {
+            f"contact {leg}": state.courses[0].final[f"soil{k}.contact_time"] for k, leg in enumerate(("+Z", "+Y", "-Z", "-Y"), 1)
+        }
 
 
 def _fill_gap(diagnosis: Diagnosis, best: Fit, ranked: Sequence[str]) -> None:
@@ -184,7 +208,9 @@ def _candidate(diagnosis: Diagnosis, one: Judged, judgement: Judgement) -> Candi
     parameters = {fit.coordinates[i].name: Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in range(first, len(fit.z))}
     titles = [diagnosis.effects[n].title for n in parts_of(one.name)]
     p = judgement.probabilities[one.name]
-    return Candidate(one.name, " + ".join(titles) or "Nothing missing", one.log_evidence, fit.chi2, p, one.adequacy, one.holdout_gain, parameters)
+    return Candidate(
+        one.name, " + ".join(titles) or "Nothing missing", one.log_evidence, fit.chi2, p, one.adequacy, one.holdout_gain, parameters
+    )
 
 
 def _named(diagnosis: Diagnosis, name: str, whole: str, probability: float) -> NamedEffect:
@@ -205,7 +231,8 @@ def _named(diagnosis: Diagnosis, name: str, whole: str, probability: float) -> N
 def _faulty(outcome: Outcome, measured: Sequence[Measured]) -> bool:
     found = [(one, fault) for one in measured for fault in faults(one)]
     outcome.faults = [
-        {"channel": f"{one.folder.name}: {fault.channel}", "what": fault.what, "from_s": fault.from_s, "to_s": fault.to_s} for one, fault in found
+        {"channel": f"{one.folder.name}: {fault.channel}", "what": fault.what, "from_s": fault.from_s, "to_s": fault.to_s}
+        for one, fault in found
     ]
     if found:
         outcome.verdict = "data_fault"

@@ -110,7 +110,15 @@ def seen_from(model: Model, z: Array, predicted: Array, slopes: Array) -> Fit:
 
 
 def fitted(
-    model: Model, z: Array, slopes: Array, predicted: Array | None = None, *, temper: float = 1.0, steps: int = 6, renew: Sequence[int] = (), renewals: int = 1
+    model: Model,
+    z: Array,
+    slopes: Array,
+    predicted: Array | None = None,
+    *,
+    temper: float = 1.0,
+    steps: int = 6,
+    renew: Sequence[int] = (),
+    renewals: int = 1,
 ) -> Fit | None:
     """The model fitted from z with slopes made there or near; None where nothing there can be flown.
 
@@ -144,7 +152,9 @@ def fitted(
     return seen_from(model, z, predicted, slopes)
 
 
-def _made(model: Model, z: Array, predicted: Array, slopes: Array, step: Array, now: float, temper: float, promised: float) -> tuple[Array, Array, Array] | None:
+def _made(
+    model: Model, z: Array, predicted: Array, slopes: Array, step: Array, now: float, temper: float, promised: float
+) -> tuple[Array, Array, Array] | None:
     """The step, or a part of it, that lowers φ: point, prediction, residual. Whatever was flown teaches the slopes."""
     for _ in range(TRIES if promised > CHANCE else 1):
         there = model.predict(z + step)

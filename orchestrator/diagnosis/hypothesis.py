@@ -31,5 +31,3 @@ def joined(first: Hypothesis, second: Hypothesis) -> Hypothesis:
 def parts_of(name: str) -> tuple[str, ...]:
     """The names that `joined` put together; none for nothing missing."""
     return () if name == NULL.name else tuple(name.split(" + "))
-
-

@@ -65,7 +65,7 @@ def colour_of(residual: Array) -> tuple[float, float]:
     return float(np.sqrt(max(c[0] / max(1.0 - 3.0 * (1.0 + rho) / max(1.0 - rho, 1e-3) / n, 0.3), 0.0))), rho
 
 
-def noise_of(times: Array, residual: Array, still: Array, sigma: float, colour: float | None) -> Noise:
+def noise_of(times: Array, residual: Array, still: NDArray[np.bool_], sigma: float, colour: float | None) -> Noise:
     """Noise of a channel from its stated σ and colour, and from a stretch in which the vehicle rests.
 
     still   mask of samples at rest. The stated numbers stand unless the stretch contradicts them by more than three standard errors.

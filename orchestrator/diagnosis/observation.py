@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +66,8 @@ class Observation:
         peaks = [r.column for r in self.readings if r.kind == "peak"]
         self.columns = tuple(dict.fromkeys(c for c in (*(t.column for t in self.tracks), *peaks) if not c.startswith("telemetry.")))
         self.final = tuple(dict.fromkeys(r.column for r in self.readings if r.kind != "peak"))
+        self._dated = list({(t.series, t.times.tobytes()): t for t in self.tracks}.values())
+        """One track of each set of instants."""
         self.places = _places([len(t.times) for t in self.tracks] + [1] * len(self.readings))
 
     @property
@@ -80,15 +83,25 @@ class Observation:
         self.noises = tuple(noises)
         self.whitenings = [Whitening(t.times, noise) for t, noise in zip(self.tracks, noises, strict=True)]
 
-    def grid(self, stop: float) -> Array:
-        """Instants (s since first contact) the search lands by: every sample as first dated, and points between."""
-        samples = np.concatenate([t.times - self.shift for t in self.tracks]) if self.tracks else np.zeros(0)
-        samples = samples[(samples > CLOSE) & (samples < stop - CLOSE)]
-        own = np.arange(0.0, stop, FILL) if self.tracks else np.linspace(0.0, stop, 9)[:-1]
-        points = np.unique(np.round(np.concatenate([samples, [stop]]), 9))
-        apart = np.abs(own[:, None] - points[None, :]).min(axis=1) > 0.25 * FILL
+    def grid(self, stop: float, values: Mapping[str, float], horizon: float = np.inf) -> Array:
+        """Instants (s since first contact) to land by: every sample as these values date it, and points between, to a little past the horizon.
+
+        A rate has corners where pads touch: interpolated over 20 ms it would be off by half its noise, so samples are met exactly.
+        """
+        dated = [t.times - self.late(t, values) for t in self._dated]
+        samples = np.concatenate(dated) if dated else np.zeros(0)
+        end = min(stop, horizon + 2.0 * FILL)
+        samples = samples[(samples > CLOSE) & (samples < end - CLOSE)]
+        own = np.arange(0.0, end, FILL) if self.tracks else np.linspace(0.0, end, 9)[:-1]
+        points = np.sort(np.concatenate([samples, [end]]))
+        near = np.searchsorted(points, own).clip(1, len(points) - 1) if len(points) > 1 else np.zeros(len(own), dtype=int)
+        apart = np.minimum(np.abs(own - points[near]), np.abs(own - points[near - 1])) > 0.25 * FILL
         merged = np.sort(np.concatenate([points, own[apart], [0.0]]))
-        return merged[np.concatenate([[True], np.diff(merged) > CLOSE])]
+        return np.asarray(merged[np.concatenate([[True], np.diff(merged) > CLOSE])])
+
+    def late(self, track: Track, values: Mapping[str, float]) -> float:
+        """s by which the track's time tags run after first contact."""
+        return self.shift + values.get(ORIGIN, 0.0) + values.get(CLOCK + track.series, 0.0)
 
     def predicted(self, course: Course, values: Mapping[str, float]) -> Array:
         """The numbers that this course would have left, in their own units; intervals give their final value."""
@@ -125,8 +138,7 @@ class Observation:
         return course.final[reading.column] + late
 
     def _track(self, track: Track, course: Course, values: Mapping[str, float]) -> Array:
-        late = self.shift + values.get(ORIGIN, 0.0) + values.get(CLOCK + track.series, 0.0)
-        return sampled(course, track.column, track.times - late)
+        return sampled(course, track.column, track.times - self.late(track, values))
 
 
 def sampled(course: Course, column: str, times: Array) -> Array:
@@ -163,7 +175,7 @@ def _weight(reading: Reading, value: float) -> float:
 
 def _places(sizes: Sequence[int]) -> list[slice]:
     ends = np.cumsum([0, *sizes]).tolist()
-    return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    return [slice(a, b) for a, b in pairwise(ends)]
 
 
 def _interval(times: Array) -> float:

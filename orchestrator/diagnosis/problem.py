@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +32,6 @@ class Landings:
     stop: list[float]
     """s since first contact to fly each of them."""
 
-    def __post_init__(self) -> None:
-        self.grids = [o.grid(stop) for o, stop in zip(self.observations, self.stop, strict=True)]
-
     @property
     def size(self) -> int:
         return sum(o.size for o in self.observations)
@@ -42,7 +40,7 @@ class Landings:
     def parts(self) -> list[slice]:
         """Rows of each landing in a residual."""
         ends = np.cumsum([0, *(o.size for o in self.observations)]).tolist()
-        return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        return [slice(a, b) for a, b in pairwise(ends)]
 
 
 class Model:
@@ -51,7 +49,6 @@ class Model:
     def __init__(self, landings: Landings, coordinates: Sequence[Coordinate], lander: Lander, horizon: float = np.inf) -> None:
         self.landings, self.coordinates, self.lander, self.horizon = landings, tuple(coordinates), lander, horizon
         self.weights = np.concatenate([o.weights(horizon) for o in landings.observations])
-        self.grids = [grid if horizon == np.inf else grid[: int(np.searchsorted(grid, horizon)) + 2] for grid in landings.grids]
 
     def predict(self, z: Array, before: tuple[Array, Array] | None = None) -> Array | None:
         """What all landings would have left; None where one of them cannot be flown.
@@ -71,12 +68,12 @@ class Model:
 
     def residual(self, predicted: Array) -> Array:
         pairs = zip(self.landings.observations, self.landings.parts, strict=True)
-        return np.concatenate([o.residual(predicted[part]) for o, part in pairs]) * self.weights
+        return np.asarray(np.concatenate([o.residual(predicted[part]) for o, part in pairs]) * self.weights)
 
     def whitened(self, slopes: Array, predicted: Array) -> Array:
         """J: derivatives of the white prediction, from those of the prediction."""
         pairs = zip(self.landings.observations, self.landings.parts, strict=True)
-        return np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None]
+        return np.asarray(np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None])
 
     def slope(self, i: int, z: Array, predicted: Array) -> Array:
         """Derivative of the prediction by z_i, by a difference that is felt: of at least FELT standard deviations in all, or of z = WIDEST."""
@@ -118,12 +115,11 @@ class Model:
         observation = self.landings.observations[k]
         values = self.values(z, k)
         own = {name: v for name, v in values.items() if not name.startswith(("clock.", "time."))}
-        course = self.lander.land({**self.landings.bases[k], **own}, self.grids[k], observation.columns, observation.final)
+        grid = observation.grid(self.landings.stop[k], values, self.horizon)
+        course = self.lander.land({**self.landings.bases[k], **own}, grid, observation.columns, observation.final)
         if course is None or not all(np.isfinite(c).all() for c in course.columns.values()):
             return None
         return observation.predicted(course, values)
-
-
 
 
 __all__ = ["Landings", "Model"]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -56,6 +55,8 @@ class Search:
         """Columns made anew along the way; those of the tolerances are made at the whole landing, once."""
         self.horizons = (*(h for h in HORIZONS if self._adds(h)), np.inf)
         self.told = told or (lambda stage, best, share: None)
+        self.leader = ""
+        """The best hypothesis so far, for whoever waits."""
         self.path: tuple[Point, ...] = ()
         self.ends: tuple[Fit, ...] = ()
 
@@ -88,7 +89,12 @@ class Search:
         tasks = [Predict(self.landings, self.nuisances, tuple(draws[i : i + 10]), first) for i in range(0, len(draws), 10)]
         rows = [row for some in self._run("draws", tasks) for row in some]
         model = Model(self.landings, self.nuisances, Nobody(), first)
-        worth = np.array([np.inf if row is None else float(np.square(model.residual(row)).sum()) / 9.0 + float(z @ z) for z, row in zip(draws, rows, strict=True)])
+        worth = np.array(
+            [
+                np.inf if row is None else float(np.square(model.residual(row)).sum()) / 9.0 + float(z @ z)
+                for z, row in zip(draws, rows, strict=True)
+            ]
+        )
         if not np.isfinite(worth).any():
             raise UnflyableError
         return [draws[i] for i in np.argsort(worth)[:CLIMBS] if np.isfinite(worth[i])]
@@ -115,14 +121,20 @@ class Search:
         if launch == len(self.path) - 1 or explains(base.chi2, self.landings.size):
             return self._fit_close(hypotheses, here)
         early = self.path[launch].z
-        runners = [(h, np.concatenate([early, own])) for h in hypotheses for own in [np.zeros(len(h.coordinates)), *map(np.array, h.scaled_starts())]]
+        runners = [
+            (h, np.concatenate([early, own]))
+            for h in hypotheses
+            for own in [np.zeros(len(h.coordinates)), *map(np.array, h.scaled_starts())]
+        ]
         for place in range(launch, len(self.path) - 1):
             runners = self._ran(runners, self.path[place], steps=3)
         last = [(h, z) for h, z in runners] + [(h, np.concatenate([base.z, z[len(base.z) :]])) for h, z in runners[:FINALISTS]]
         tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), here, z, 6, self.fresh) for h, z in last]
         best = self._best_of([h.name for h, _ in last], self._run("hypotheses", tasks))
         left = [h for h in hypotheses if h.name not in best]
-        best |= self._best_of([h.name for h in left], self._run("hypotheses", [self._at(h, here, np.zeros(len(h.coordinates))) for h in left]))
+        best |= self._best_of(
+            [h.name for h in left], self._run("hypotheses", [self._at(h, here, np.zeros(len(h.coordinates))) for h in left])
+        )
         return best
 
     def _ran(self, runners: list[tuple[Hypothesis, Array]], point: Point, steps: int) -> list[tuple[Hypothesis, Array]]:
@@ -159,6 +171,7 @@ class Search:
     def refine_best(self, fits: dict[str, Fit]) -> dict[str, Fit]:
         """The finalists with fresh slopes; whoever they overtake is left as it is."""
         ranked = sorted(fits, key=lambda name: -fits[name].log_evidence)
+        self.leader = ranked[0]
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
         return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
 
@@ -180,11 +193,17 @@ class Search:
 
     def fit_seconds(self, first: Hypothesis, fit: Fit, hypotheses: Sequence[Hypothesis]) -> dict[str, tuple[Hypothesis, Fit]]:
         """Pairs with a first effect: every second one judged by its slopes at the first one's fit, the best of them fitted."""
-        others = [h for h in hypotheses if h.name != first.name and not set(s for c in h.coordinates for s in c.slots) & set(s for c in first.coordinates for s in c.slots)]
+        others = [h for h in hypotheses if h.name != first.name and not slots_of(h) & slots_of(first)]
         model = [Model(self.landings, (*fit.coordinates, *h.coordinates), Nobody()) for h in others]
         count = len(fit.z)
         asks = [
-            Slopes(self.landings, m.coordinates, np.concatenate([fit.z, np.zeros(len(h.coordinates))]), fit.predicted, tuple(range(count, count + len(h.coordinates))))
+            Slopes(
+                self.landings,
+                m.coordinates,
+                np.concatenate([fit.z, np.zeros(len(h.coordinates))]),
+                fit.predicted,
+                tuple(range(count, count + len(h.coordinates))),
+            )
             for m, h in zip(model, others, strict=True)
         ]
         linear = {}
@@ -195,7 +214,14 @@ class Search:
         best = [pair for pair in best if pair[0] > fit.log_evidence + 1.0]
         here = Point(fit.z, fit.predicted, fit.slopes, np.inf)
         tasks = [
-            FitAt(self.landings, (*fit.coordinates, *h.coordinates), here, np.concatenate([fit.z, np.zeros(len(h.coordinates))]), 5, self.fresh)
+            FitAt(
+                self.landings,
+                (*fit.coordinates, *h.coordinates),
+                here,
+                np.concatenate([fit.z, np.zeros(len(h.coordinates))]),
+                5,
+                self.fresh,
+            )
             for _, h in best
         ]
         found = {}
@@ -221,8 +247,8 @@ class Search:
         return seen_from(Model(self.landings, fit.coordinates, Nobody()), fit.z, fit.predicted, fit.slopes)
 
     def _run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
-        self.told(stage, "", 0.0)
-        return self.crew.run(tasks, lambda done, of: self.told(stage, "", done / of))
+        self.told(stage, self.leader, 0.0)
+        return self.crew.run(tasks, lambda done, of: self.told(stage, self.leader, done / of))
 
 
 def explains(chi2: float, count: float) -> bool:
@@ -237,6 +263,11 @@ def promised(model: Model, z: Array, predicted: Array, slopes: Array) -> float:
     slope = jacobian.T @ residual - z
     step = np.linalg.solve(hessian, slope)
     return float(-0.5 * (residual @ residual + z @ z) + 0.5 * slope @ step - 0.5 * np.linalg.slogdet(hessian)[1])
+
+
+def slots_of(h: Hypothesis) -> set[str]:
+    """What a hypothesis moves."""
+    return {name for c in h.coordinates for name, _ in c.slots}
 
 
 class Nobody:

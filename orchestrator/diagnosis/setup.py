@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from orchestrator.blueprint import Blueprint
 from orchestrator.diagnosis.addresses import Addresses
-from orchestrator.diagnosis.coordinates import SHARED, Coordinate
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate, Operation
 from orchestrator.diagnosis.effects.effect import Effect, Parameter
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.landing import Lander, TwinLander
@@ -22,8 +22,8 @@ from orchestrator.diagnosis.places import CLOCK, TWIN
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.recorded import twin_column
 from orchestrator.diagnosis.twin_parameters import twin_parameters
-from orchestrator.master.slave import Interface, Kind
 from orchestrator.errors import MeasuredError, ScenarioError, UserError
+from orchestrator.master.slave import Interface, Kind
 from orchestrator.scenario.locate import find_fmu
 
 Array = NDArray[np.float64]
@@ -68,7 +68,9 @@ def fast_base(addresses: Addresses) -> dict[str, float]:
     parameters, reason = twin_parameters(addresses)
     twin = addresses.library(TWIN)
     if parameters is None or twin is None:
-        raise UserError(f"{addresses.where}: the fast twin cannot stand in for this scenario: {reason}; leave out what is not ours, or build the FMUs")
+        raise UserError(
+            f"{addresses.where}: the fast twin cannot stand in for this scenario: {reason}; leave out what is not ours, or build the FMUs"
+        )
     sensor = addresses.library("RateSensor")
     base = _starts(twin, "") | (_starts(sensor, "sensor.") if sensor else {})
     for name, values in parameters.items():
@@ -117,9 +119,9 @@ def nuisances_of(addresses: Addresses, prior: Prior, landing: int, base: dict[st
     means = np.atleast_1d(prior.mean)
     if len(groups) != len(means):
         raise MeasuredError(f"prior.{prior.name}: gives {len(means)} numbers, expects {len(groups)}; give one for each component")
-    sigmas = np.atleast_1d(prior.sigma if prior.sigma is not None else prior.sigma_log)
-    sigmas = np.broadcast_to(sigmas, means.shape)
-    operation = "add" if prior.sigma is not None else "scale"
+    spread = prior.sigma if prior.sigma is not None else prior.sigma_log
+    sigmas = np.broadcast_to(np.atleast_1d(0.0 if spread is None else spread), means.shape)
+    operation: Operation = "add" if prior.sigma is not None else "scale"
     found = []
     for i, (names, mean, sigma) in enumerate(zip(groups, means.tolist(), sigmas.tolist(), strict=True)):
         for name in names:
@@ -127,7 +129,16 @@ def nuisances_of(addresses: Addresses, prior: Prior, landing: int, base: dict[st
         label = prior.name if len(groups) == 1 else f"{prior.name}[{i + 1}]"
         low = -0.95 * mean if operation == "add" and prior.name in ("soil.friction",) else -np.inf
         found.append(
-            Coordinate(label, tuple((n, 1.0) for n in names), sigma, operation=operation, low=low, unit=prior.unit, landing=landing, step=NUISANCE_STEP)
+            Coordinate(
+                label,
+                tuple((n, 1.0) for n in names),
+                sigma,
+                operation=operation,
+                low=low,
+                unit=prior.unit,
+                landing=landing,
+                step=NUISANCE_STEP,
+            )
         )
     return found
 
@@ -166,7 +177,17 @@ def _coordinate(parameter: Parameter, slots: tuple[tuple[str, float], ...], fixe
     positive = parameter.prior.shape == "half-normal"
     low, high = parameter.limits
     return Coordinate(
-        parameter.name, slots, parameter.prior.sigma, parameter.null, parameter.operation, low, high, positive, parameter.unit, step=LEAST_EFFECT_STEP, fixed=fixed
+        parameter.name,
+        slots,
+        parameter.prior.sigma,
+        parameter.null,
+        parameter.operation,
+        low,
+        high,
+        positive,
+        parameter.unit,
+        step=LEAST_EFFECT_STEP,
+        fixed=fixed,
     )
 
 
@@ -190,7 +211,9 @@ def observation_of(addresses: Addresses, measured: Measured) -> Observation:
         for i, channel in enumerate(series.channels):
             column = _column(addresses, channel, f"{measured.folder.name}: series.{series.name}")
             valid = series.mask[:, i]
-            tracks.append(Track(series.name, channel, column, series.times[valid], series.values[valid, i], float(series.sigma[i]), series.colour))
+            tracks.append(
+                Track(series.name, channel, column, series.times[valid], series.values[valid, i], float(series.sigma[i]), series.colour)
+            )
     readings = [_reading(addresses, scalar, measured.folder.name) for scalar in measured.values]
     return Observation(tracks, readings)
 
@@ -236,5 +259,3 @@ def set_up(blueprint: Blueprint, measured: Sequence[Measured], effects: Mapping[
     landings = Landings(observations, bases, stops)
     names = [one.folder.name for one in measured]
     return Setup(addresses, make, base, landings, names, nuisances, tolerances_of(addresses, tolerances), hypotheses, skipped)
-
-

@@ -16,7 +16,6 @@ from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import noise_of
-from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.search import Search, Told
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks import Land
@@ -59,11 +58,12 @@ def align(setup: Setup, crew: Crew) -> str:
             return ""
         observation.shift = first_contact(observation, course)
         if abs(observation.shift) > FAR:
-            setup.nuisances[:] = [replace(c, sigma=0.05) if c.name == "time.origin" and c.landing in (SHARED, k) else c for c in setup.nuisances]
+            setup.nuisances[:] = [
+                replace(c, sigma=0.05) if c.name == "time.origin" and c.landing in (SHARED, k) else c for c in setup.nuisances
+            ]
         complaint = swapped(observation, course)
         if complaint:
             return f"{setup.names[k]}: {complaint}"
-    setup.landings = Landings(setup.landings.observations, setup.landings.bases, setup.landings.stop)
     return ""
 
 
@@ -161,7 +161,9 @@ def posterior_of(fit: Fit, nuisances: int) -> list[Coordinate]:
     return found
 
 
-def ask_holdouts(state: State, held: Setup, crew: Crew, seed: int, names: Sequence[str], told: Told | None = None) -> tuple[dict[str, Fit], dict[str, tuple[float, float]]]:
+def ask_holdouts(
+    state: State, held: Setup, crew: Crew, seed: int, names: Sequence[str], told: Told | None = None
+) -> tuple[dict[str, Fit], dict[str, tuple[float, float]]]:
     """Fits of nothing missing and of `names` to the held-out landings, each effect known only as the fitted landings left it."""
     count = len(state.search.nuisances)
     fits: dict[str, Fit] = {}

@@ -87,7 +87,11 @@ class Climb:
             slopes[:, list(which)] = model.slopes(z, predicted, which)
             first = horizon == self.horizons[0]
             fit = fitted(model, z, slopes, predicted, temper=3.0, steps=4, renew=self.fresh) if first else None
-            fit = fitted(model, fit.z, fit.slopes, fit.predicted, renew=self.fresh) if fit else fitted(model, z, slopes, predicted, renew=self.fresh)
+            fit = (
+                fitted(model, fit.z, fit.slopes, fit.predicted, renew=self.fresh)
+                if fit
+                else fitted(model, z, slopes, predicted, renew=self.fresh)
+            )
             if fit is None:
                 return None
             path.append((Point(z, predicted, slopes, horizon), fit))

@@ -35,7 +35,9 @@ class Judged:
     @property
     def stands(self) -> bool:
         """Adequate here, and on the held-out landings better than nothing missing."""
-        return self.adequacy >= ADEQUATE and (self.holdout_gain is None or (self.holdout_gain > 0.0 and (self.holdout_adequacy or 0.0) >= LOST))
+        return self.adequacy >= ADEQUATE and (
+            self.holdout_gain is None or (self.holdout_gain > 0.0 and (self.holdout_adequacy or 0.0) >= LOST)
+        )
 
 
 def probabilities(hypotheses: Sequence[Judged], singles: int) -> dict[str, float]:
@@ -69,14 +71,21 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     best = known[ranked[0]] if ranked else null
     if best is null or best.log_evidence - null.log_evidence < BEATS or found[NULL.name] > 1.0 - SURE:
         if null.adequacy < LOST:
-            return Judgement("none_of_my_effects", (), found, "nothing missing is not adequate, and no effect of the library is better by enough")
+            return Judgement(
+                "none_of_my_effects", (), found, "nothing missing is not adequate, and no effect of the library is better by enough"
+            )
         return Judgement("nothing_missing", (), found)
     credible = _smallest_set(ranked, found)
     standing = tuple(n for n in credible if known[n].stands)
     if not standing:
         if null.adequacy >= LOST and best.adequacy >= ADEQUATE:
             return Judgement("nothing_missing", (), found, f"{best.name} fits better, but not on the held-out landing")
-        return Judgement("none_of_my_effects", (), found, f"the best of the library, {best.name}, leaves more than noise or fails on the held-out landing")
+        return Judgement(
+            "none_of_my_effects",
+            (),
+            found,
+            f"the best of the library, {best.name}, leaves more than noise or fails on the held-out landing",
+        )
     if len(credible) == 1 and standing:
         return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
     if len(standing) == 1 and found[standing[0]] >= SURE:

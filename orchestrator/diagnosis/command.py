@@ -1,0 +1,85 @@
+"""`orchestrator diagnose` and `orchestrator distinguish`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from orchestrator.scenario.locate import find_scenario
+
+MeasuredFolders = Annotated[list[Path], typer.Option("--measured", help="Folder of measured data (landing.toml); may be repeated.")]
+
+
+def diagnose(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")],
+    measured: MeasuredFolders,
+    holdout: Annotated[list[Path] | None, typer.Option(help="Landings kept out of the fit, to judge it by; may be repeated.")] = None,
+    effects: Annotated[list[Path] | None, typer.Option(help="Folder of effects of your own, beside the library; may be repeated.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the report [default: results/SCENARIO-diagnosis].")] = None,
+    budget: Annotated[int, typer.Option(help="Landings after which only what the verdict needs is flown.")] = 20000,
+    seed: Annotated[int, typer.Option(help="Of the draws that fits start from.")] = 0,
+    workers: Annotated[int, typer.Option(help="Processes; 0: one a core.")] = 0,
+    overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
+    verdict_only: Annotated[
+        bool, typer.Option("--verdict-only", help="Leave out the co-simulation's proof and the report's figures.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
+) -> None:
+    """Find where simulation and measured data disagree, name the missing effect, add it, and show the gap shrink.
+
+    Interrupted with Ctrl-C it goes on from where it was when called again with the same --out.
+    """
+    from os import cpu_count
+
+    from orchestrator.diagnosis.diagnose import Request
+    from orchestrator.diagnosis.diagnose import diagnose as search
+    from orchestrator.diagnosis.outcome import EXIT
+    from orchestrator.diagnosis.present import present
+    from orchestrator.diagnosis.report import terminal_summary
+
+    path = find_scenario(scenario)
+    folder = out or Path("results") / f"{path.stem}-diagnosis"
+    request = Request(path, measured, holdout or (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or (), budget)
+    folder.mkdir(parents=True, exist_ok=True)
+    with _stages(quiet) as told:
+        diagnosis = search(request, told)
+        if verdict_only:
+            diagnosis.outcome.write(folder)
+        else:
+            told("proof by co-simulation", "", 0.0)
+            present(request, diagnosis)
+    if not quiet:
+        Console().print(terminal_summary(diagnosis.outcome, folder))
+    if diagnosis.outcome.verdict in EXIT:
+        raise typer.Exit(EXIT[diagnosis.outcome.verdict])
+
+
+@contextmanager
+def _stages(quiet: bool) -> Iterator[Any]:
+    """A bar a stage on a terminal (stderr), nothing in a pipe."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield lambda stage, best, share: None
+        return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    with Progress(
+        TextColumn("{task.description:34}"),
+        BarColumn(),
+        TextColumn("{task.fields[best]}"),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+    ) as bar:
+        task = bar.add_task("reading", total=1.0, best="")
+
+        def told(stage: str, best: str, share: float) -> None:
+            shown = bar.tasks[task].fields["best"] if not best else f"best so far: {best}"
+            bar.update(task, description=stage, completed=share, best=shown)
+
+        yield told

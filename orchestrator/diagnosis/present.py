@@ -1,0 +1,216 @@
+"""After the verdict: the co-simulation's proof, the revised scenario, and what the report draws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.before_after import before_after, write_before_after
+from orchestrator.diagnosis.believed import belief_of, fitted_values, without_effect
+from orchestrator.diagnosis.crew import Crew, Store
+from orchestrator.diagnosis.diagnose import Diagnosis, Request
+from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.flight import CoSimulation
+from orchestrator.diagnosis.hypothesis import NULL, parts_of
+from orchestrator.diagnosis.landing import Course
+from orchestrator.diagnosis.moves import Named
+from orchestrator.diagnosis.observation import Observation, sampled
+from orchestrator.diagnosis.outcome import Candidate
+from orchestrator.diagnosis.proof import NULL as BEFORE
+from orchestrator.diagnosis.proof import WINNER, Observed, Proof, prove
+from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses, RestValue, verdict_sentence, write_report
+from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
+from orchestrator.diagnosis.setup import Setup
+from orchestrator.diagnosis.stages import CONTACTS, look
+
+Array = NDArray[np.float64]
+UNITS = {"rates": "rad/s", "attitude": "rad"}
+
+
+def present(request: Request, diagnosis: Diagnosis) -> None:
+    """diagnosis.json, report.html and, where an effect is named, revised.toml, into the request's folder."""
+    outcome, setup, state = diagnosis.outcome, diagnosis.setup, diagnosis.state
+    request.out.mkdir(parents=True, exist_ok=True)
+    courses: list[LandingCourses] = []
+    if setup is not None and state is not None:
+        proof = _proven(request, diagnosis)
+        courses = _courses(request, diagnosis, proof)
+    outcome.sentence = verdict_sentence(outcome)
+    write_report(request.out, outcome, courses)
+    outcome.write(request.out)
+
+
+def chosen(diagnosis: Diagnosis) -> str:
+    """The hypothesis that the verdict stands for; nothing missing where it names none."""
+    names = {e.name for e in diagnosis.outcome.effects}
+    if diagnosis.state is None or not names:
+        return NULL.name
+    return next((n for n in diagnosis.state.fits if set(parts_of(n)) == names), NULL.name)
+
+
+def _named(diagnosis: Diagnosis, name: str) -> list[Named]:
+    """Effects of a hypothesis with what its own fit estimated."""
+    found: dict[str, Candidate] = {c.name: c for c in diagnosis.outcome.candidates}
+    if diagnosis.state is None or name not in found:
+        return []
+    if name == chosen(diagnosis):
+        return [Named(diagnosis.effects[e.name], e.parameters) for e in diagnosis.outcome.effects]
+    return [Named(diagnosis.effects[p], found[name].parameters) for p in parts_of(name) if p in diagnosis.effects]
+
+
+def _proven(request: Request, diagnosis: Diagnosis) -> Proof | None:
+    outcome, setup, state = diagnosis.outcome, diagnosis.setup, diagnosis.state
+    if setup is None or state is None:
+        return None
+    name = chosen(diagnosis)
+    simulation = CoSimulation(request.scenario, request.overrides)
+    try:
+        named = _named(diagnosis, name)
+        winner = belief_of(setup.addresses, WINNER, _fits(diagnosis, name), inserts_of(named)) if named else None
+        ablated = without_effect(setup.addresses, "without", _fits(diagnosis, name), len(state.search.nuisances)) if named else None
+        rival = next((c.name for c in outcome.candidates if c.name not in (NULL.name, name) and len(parts_of(c.name)) == len(named)), "")
+        placebo = (
+            belief_of(setup.addresses, rival, _fits(diagnosis, rival), inserts_of(_named(diagnosis, rival))) if named and rival else None
+        )
+        null = belief_of(setup.addresses, BEFORE, _fits(diagnosis, NULL.name))
+        proof = prove(simulation, _observed(diagnosis), null, winner, ablated, placebo)
+        _take_over(diagnosis, proof)
+        if named:
+            _revise(request, diagnosis, named, name)
+        write_before_after(request.out, before_after(proof))
+        return proof
+    finally:
+        simulation.close()
+
+
+def _take_over(diagnosis: Diagnosis, proof: Proof) -> None:
+    """What the co-simulation says takes the place of what the search said."""
+    outcome = diagnosis.outcome
+    outcome.checks, outcome.simulations = proof.checks, outcome.simulations + proof.simulations
+    outcome.warnings += proof.warnings
+    if outcome.effects:
+        outcome.gap = proof.gap
+    if not proof.numerics.ok:
+        outcome.verdict = "numerics"
+        outcome.warnings.append(
+            proof.numerics.reason or f"half the interval and tolerance moves a channel by {proof.numerics.worst:.2g} sigma"
+        )
+
+
+def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name: str) -> None:
+    setup, outcome = diagnosis.setup, diagnosis.outcome
+    if setup is None:
+        return
+    title = f"{setup.addresses.blueprint.scenario.table.title}, with {' and '.join(e.title.lower() for e in outcome.effects)}"
+    revised = write_revision(
+        request.out, setup.addresses, named, title, [f"found by orchestrator diagnose; see {request.out / 'report.html'}"]
+    )
+    outcome.revised_scenario = str(revised)
+    for k, applied in enumerate(fitted_values(setup.addresses, setup.landings, diagnosis.state.fits[name] if diagnosis.state else None)):  # type: ignore[arg-type]
+        write_landing(request.out, k + 1, revised, applied.values, applied.seen, setup.names[k])
+
+
+def _fits(diagnosis: Diagnosis, name: str) -> list:  # type: ignore[type-arg]
+    """(landings, fit), of the fitted ones and, where it was asked of them, the held-out ones."""
+    setup, held, state = diagnosis.setup, diagnosis.held, diagnosis.state
+    if setup is None or state is None:
+        return []
+    found = [(setup.landings, state.fits[name])]
+    if held is not None and name in diagnosis.holdout_fits:
+        found.append((held.landings, diagnosis.holdout_fits[name]))
+    return found
+
+
+def _observed(diagnosis: Diagnosis) -> list[Observed]:
+    found = []
+    for setup, holdout in ((diagnosis.setup, False), (diagnosis.held, True)):
+        if setup is None or (holdout and not diagnosis.holdout_fits):
+            continue
+        for name, observation, stop in zip(setup.names, setup.landings.observations, setup.landings.stop, strict=True):
+            found.append(Observed(name, observation, stop, holdout))
+    return found
+
+
+# Courses
+
+
+def _courses(request: Request, diagnosis: Diagnosis, proof: Proof | None) -> list[LandingCourses]:
+    setup, held, state = diagnosis.setup, diagnosis.held, diagnosis.state
+    if setup is None or state is None:
+        return []
+    name, found = chosen(diagnosis), []
+    for one, fits, kind in ((setup, state.fits, "fit"), (held, diagnosis.holdout_fits, "holdout")):
+        if one is None or NULL.name not in fits:
+            continue
+        crew = Crew(one.make, 1, Store(None))
+        try:
+            for k in range(len(one.names)):
+                found.append(_landing(one, crew, k, fits[NULL.name], fits.get(name) if name != NULL.name else None, proof, kind))
+        finally:
+            crew.close()
+    return [it for it in found if it is not None]
+
+
+def _landing(setup: Setup, crew: Crew, k: int, null: Fit, after: Fit | None, proof: Proof | None, kind: str) -> LandingCourses | None:
+    observation, name = setup.landings.observations[k], setup.names[k]
+    first = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k, CONTACTS)
+    fitted = look(setup, crew, null.coordinates, null.z, k, CONTACTS)
+    then = look(setup, crew, after.coordinates, after.z, k, CONTACTS) if after is not None else None
+    if first is None or fitted is None:
+        return None
+    sides = {it.belief: it.predicted for it in (proof.flown if proof else []) if it.landing == name and it.holdout == (kind == "holdout")}
+    before, improved = sides.get(BEFORE), sides.get(WINNER)
+    part = setup.landings.parts[k]
+    before = null.predicted[part] if before is None else before
+    improved = after.predicted[part] if after is not None and improved is None else improved
+    spread = _spread(after, part) if after is not None else None
+    channels = [_channel(observation, i, (first, fitted, then), before, improved, spread) for i in range(len(observation.tracks))]
+    rest = [_rest(observation, i, before, improved) for i in range(len(observation.readings))]
+    shown = then or fitted
+    contacts = [
+        Contact(leg, shown.final[c] + observation.shift)
+        for leg, c in zip(("+Z", "+Y", "-Z", "-Y"), CONTACTS, strict=True)
+        if shown.final[c] >= 0.0
+    ]
+    return LandingCourses(name, "holdout" if kind == "holdout" else "fit", channels, rest, contacts)
+
+
+def _spread(fit: Fit, part: slice) -> Array:
+    """Standard deviation of the prediction from what is not known of the parameters."""
+    slopes = fit.slopes[part]
+    return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", slopes, fit.covariance, slopes)))
+
+
+def _channel(
+    observation: Observation,
+    i: int,
+    courses: tuple[Course, Course, Course | None],
+    before: Array,
+    after: Array | None,
+    spread: Array | None,
+) -> ChannelCourse:
+    track, place, noise = observation.tracks[i], observation.places[i], observation.noises[i]
+    last = float(track.times[-1]) - observation.shift + 0.1
+    early = min(float(track.times[0]) - observation.shift, 0.0)
+    grid = np.concatenate([np.arange(early, 0.0, 0.01), courses[1].times[courses[1].times <= last]])
+    first, fitted, then = (None if c is None else sampled(c, track.column, grid) for c in courses)
+    band = None if spread is None else np.interp(grid + observation.shift, track.times, spread[place])
+    residual = None if after is None else (track.readings - after[place]) / noise.sigma
+    assert first is not None
+    return ChannelCourse(
+        track.series, track.channel, UNITS.get(track.series, ""), track.times, track.readings, noise.sigma, grid + observation.shift,
+        first, fitted, then, band, (track.readings - before[place]) / noise.sigma, residual,
+    )  # fmt: skip
+
+
+def _rest(observation: Observation, i: int, before: Array, after: Array | None) -> RestValue:
+    reading, row = observation.readings[i], observation.places[len(observation.tracks) + i].start
+    value = None if reading.interval else reading.value
+    low, high = (reading.low, reading.high) if reading.interval else (None, None)
+    sigma = None if reading.interval else reading.sigma
+    then = None if after is None else float(after[row])
+    return RestValue(
+        reading.name, "m" if reading.kind == "rest" else "", float(before[row]), float(before[row]), then, value, sigma, low, high
+    )
