@@ -63,10 +63,11 @@ def _revised(vehicle: Vehicle, diagnosis: Tree) -> list[tuple[Effect, Sequence[f
     named = [it for it in diagnosis.get("effects") or [] if it["name"] in vehicle.effects]
     found = [_at(vehicle, vehicle.effects[it["name"]], it["parameters"]) for it in named]
     term = diagnosis.get("term") or {}
-    if not found and term.get("fixed") and term.get("coefficient"):
-        size = abs(float(term["coefficient"]))
+    value = (term.get("estimate") or {}).get("value")
+    if not found and term.get("fixed") and value:
+        size = abs(float(value))
         exponents = {address.partition(".")[2]: value for address, value in term["fixed"].items()}
-        found.append((law("term", size, "term", term["port"], "active", **exponents), [math.copysign(1.0, float(term["coefficient"]))]))
+        found.append((law("term", size, "term", term["port"], "active", **exponents), [math.copysign(1.0, float(value))]))
     return found
 
 

@@ -46,7 +46,7 @@ class Diagnosis:
 def environment(log: Path) -> dict[str, str]:
     """As little as the diagnosis needs; one thread, so that cases do not take each other's time."""
     kept = {name: os.environ[name] for name in KEPT if name in os.environ}
-    path = os.pathsep.join([str(WATCH), str(ROOT), str(ROOT / "fmus")])
+    path = os.pathsep.join(str(folder) for folder in (WATCH, ROOT, ROOT / "fmus", ROOT / "benchmarks"))
     return kept | {"PYTHONPATH": path, "SEALED_OPENED": str(log), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
