@@ -28,6 +28,7 @@ from orchestrator.diagnosis.fit import Fit, fitted
 from orchestrator.diagnosis.problem import Model
 from sealed.gaussian_process import likelihood_gain, mean_at
 from sealed.handed import Handed
+from sealed.truth import STOP
 from sealed.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -133,8 +134,8 @@ def _features(fit: Handed) -> tuple[dict[str, Array], dict[str, str]]:
     legs = (1, 2, 3, 4)
     ports = {f"soil{i}.penetration": "soil.normal" for i in legs} | {f"soil{i}.skid": "soil.tangential" for i in legs}
     ports |= {f"leg{i}.primary.stroke": "strut" for i in legs} | dict.fromkeys(("rates.yaw", "rates.pitch", "rates.roll"), "body")
-    model = fit.model(())
-    course = fit.lander.land(model.landings.bases[0], model.grids[0], tuple(ports), ())
+    grid = fit.observation.grid(STOP, {}, np.inf)
+    course = fit.lander.land(fit.model(()).landings.bases[0], grid, tuple(ports), ())
     if course is None:
         raise ArithmeticError("the scenario cannot be flown at the prior mean")
     grown = {f"d {name}": np.gradient(course.columns[name], course.times) for name in list(ports) if not name.startswith("rates.")}

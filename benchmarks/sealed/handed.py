@@ -43,9 +43,9 @@ class Handed:
         """Of one landing at the prior mean, moved along the data's clock."""
         begin = float(min(track.times[0] for track in self.observation.tracks))
         self.observation.shift = begin + 0.5 * (EARLY + LATE)
-        model = self.model(())
-        values = model.landings.bases[0]
-        course = self.lander.land(values, model.grids[0], self.observation.columns, self.observation.final)
+        values = self.model(()).landings.bases[0]
+        grid = self.observation.grid(STOP, {}, np.inf)
+        course = self.lander.land(values, grid, self.observation.columns, self.observation.final)
         if course is None:
             return begin
         moved = np.arange(EARLY, LATE, FINE) - 0.5 * (EARLY + LATE)

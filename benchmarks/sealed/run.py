@@ -25,7 +25,7 @@ from sealed.kinds import SHARES
 from sealed.make import UnmadeError, make
 from sealed.report import UnsealedError, report, scores_of
 from sealed.sealing import COMMAND, Diagnosis
-from sealed.vehicle import LIBRARY, ZUPP
+from sealed.vehicle import ZUPP
 
 Told = Callable[[], None]
 
@@ -55,7 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     running.add_argument("--results", type=Path, required=True)
     running.add_argument("--jobs", type=int, default=2, help="cases at a time, one process each")
     running.add_argument("--seed", type=int, default=0, help="of the diagnosis")
-    running.add_argument("--diagnose", default=shlex.join(COMMAND), help="command; {scenario}, {effects}, {seed} are filled in")
+    running.add_argument("--diagnose", default=shlex.join(COMMAND), help="command; {scenario} and {seed} are filled in")
     running.add_argument("--limit", type=float, default=7200.0, help="s of wall time a case may take")
     scoring = commands.add_parser("score", help="join diagnoses and keys")
     scoring.add_argument("--keys", type=Path, required=True)
@@ -72,7 +72,7 @@ def _make(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    diagnosis = Diagnosis(ZUPP, LIBRARY, options.seed, tuple(shlex.split(options.diagnose)), options.limit)
+    diagnosis = Diagnosis(ZUPP, options.seed, tuple(shlex.split(options.diagnose)), options.limit)
     with _bar("diagnoses", len(diagnoses.missing(options.set, options.results))) as told:
         failed = diagnoses.run(options.set, options.results, diagnosis, options.jobs, lambda _: told())
     if failed:

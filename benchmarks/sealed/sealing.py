@@ -22,24 +22,23 @@ from typing import Any
 from sealed.commit import ROOT, commit
 
 WATCH = Path(__file__).resolve().parent / "watch"
-COMMAND = (sys.executable, "-m", "orchestrator.cli", "diagnose", "{scenario}", "--measured", "fit", "--holdout", "holdout", "--effects",
-           "{effects}", "--out", "out", "--seed", "{seed}", "--workers", "1")  # fmt: skip
+COMMAND = (sys.executable, "-m", "orchestrator.cli", "diagnose", "{scenario}", "--measured", "fit", "--holdout", "holdout",
+           "--out", "out", "--seed", "{seed}", "--workers", "1")  # fmt: skip
 KEPT = ("HOME", "LANG", "PATH", "SYSTEMROOT", "TMPDIR", "NUMBA_CACHE_DIR", "VIRTUAL_ENV")
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """How to call it: words in which {scenario}, {effects} and {seed} are filled in."""
+    """How to call it: words in which {scenario} and {seed} are filled in."""
 
     scenario: Path
-    effects: Path
     seed: int
     command: Sequence[str] = COMMAND
     limit: float = 7200.0
     """s of wall time."""
 
     def words(self) -> list[str]:
-        filled = {"scenario": str(self.scenario), "effects": str(self.effects), "seed": str(self.seed)}
+        filled = {"scenario": str(self.scenario), "seed": str(self.seed)}
         return [word.format(**filled) for word in self.command]
 
 

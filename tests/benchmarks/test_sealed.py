@@ -16,7 +16,7 @@ from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
 from sealed.kinds import SHARES, counts, plans
 from sealed.make import made, make, scenes_of
-from sealed.vehicle import LIBRARY, ZUPP, Vehicle
+from sealed.vehicle import ZUPP, Vehicle
 from sealed.wilson import wilson
 
 from orchestrator.diagnosis.landing import TwinLander
@@ -120,7 +120,7 @@ def diagnosed(tmp_path: Path, *arguments: str) -> tuple[dict[str, Any], dict[str
     (tmp_path / "keys" / "000.json").write_text("{}")
     (tmp_path / "peek.py").write_text(PEEK)
     command = (sys.executable, str(tmp_path / "peek.py"), *arguments)
-    assert diagnoses.run(tmp_path / "set", tmp_path / "results", sealing.Diagnosis(ZUPP, LIBRARY, 0, command), 1) == []
+    assert diagnoses.run(tmp_path / "set", tmp_path / "results", sealing.Diagnosis(ZUPP, 0, command), 1) == []
     place = tmp_path / "results" / "000"
     return json.loads((place / "run.json").read_text()), json.loads((place / "diagnosis.json").read_text())
 
