@@ -9,7 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
-from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew, Store
 from orchestrator.diagnosis.effects.effect import Effect
@@ -88,20 +88,22 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
         holdout=[str(p) for p in request.holdout],
     )
     tolerances = _beside_scenarios("tolerances.toml")
-    setup = set_up(blueprint, measured, effects, tolerances)
+    setup = set_up(blueprint, measured, effects, tolerances, request.overrides)
     outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
+    if setup.why_slow:
+        outcome.warnings.append(f"searched through the master, with {len(setup.hypotheses)} effects: {setup.why_slow}")
     if _faulty(outcome, [*measured, *held]):
         return Diagnosis(outcome, setup, effects=effects)
     crew = Crew(setup.make, request.workers, Store(request.out / ".work"))
     try:
-        return _searched(request, setup, blueprint_of_held(blueprint, held, tolerances), crew, outcome, effects, told, began)
+        return _searched(request, setup, _held_out(blueprint, held, tolerances, request.overrides), crew, outcome, effects, told, began)
     finally:
         crew.close()
 
 
-def blueprint_of_held(blueprint: object, held: Sequence[Measured], tolerances: Path) -> Setup | None:
+def _held_out(blueprint: Blueprint, held: Sequence[Measured], tolerances: Path, overrides: Sequence[str]) -> Setup | None:
     """The held-out landings' own set-up, without effects."""
-    return set_up(blueprint, held, {}, tolerances) if held else None  # type: ignore[arg-type]
+    return set_up(blueprint, held, {}, tolerances, overrides) if held else None
 
 
 def _searched(

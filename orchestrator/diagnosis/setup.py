@@ -15,7 +15,8 @@ from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate, Operation
 from orchestrator.diagnosis.effects.effect import Effect, Parameter
 from orchestrator.diagnosis.hypothesis import Hypothesis
-from orchestrator.diagnosis.landing import Lander, TwinLander
+from orchestrator.diagnosis.landing import Course, Lander, TwinLander
+from orchestrator.diagnosis.master_lander import MasterLanderMaker, unit_base, unit_slots
 from orchestrator.diagnosis.measured.landing import Measured, Prior, Scalar
 from orchestrator.diagnosis.observation import ORIGIN, Observation, Reading, Track
 from orchestrator.diagnosis.places import CLOCK, TWIN
@@ -46,6 +47,20 @@ class TwinMaker:
 
 
 @dataclass
+class Vehicle:
+    """How a search flies the scenario: the twin, or, where it cannot stand in, the scenario's own units through the master."""
+
+    addresses: Addresses
+    make: Callable[[], Lander]
+    base: dict[str, float]
+    """The scenario's values in the lander's names."""
+    slots: Callable[[str], list[list[str]]]
+    """The lander's variables of each component of an address; nothing where it has none."""
+    why_slow: str = ""
+    """Why the twin cannot stand in; empty where it does."""
+
+
+@dataclass
 class Setup:
     """What a search needs."""
 
@@ -61,26 +76,60 @@ class Setup:
     hypotheses: list[Hypothesis]
     skipped: dict[str, str] = field(default_factory=dict)
     """Effects that this scenario cannot hold, and why."""
+    why_slow: str = ""
+    """Why the search goes through the master; empty where the twin flies."""
 
 
-def fast_base(addresses: Addresses) -> dict[str, float]:
-    """The twin's values that equal the scenario, for a search. UserError where the twin cannot stand in."""
+def vehicle_of(addresses: Addresses, effects: Mapping[str, Effect], overrides: Sequence[str] = ()) -> Vehicle:
+    """The twin where it can stand in for the scenario, else the units themselves."""
     parameters, reason = twin_parameters(addresses)
-    twin = addresses.library(TWIN)
-    if parameters is None or twin is None:
-        raise UserError(
-            f"{addresses.where}: the fast twin cannot stand in for this scenario: {reason}; leave out what is not ours, or build the FMUs"
-        )
-    sensor = addresses.library("RateSensor")
-    base = _starts(twin, "") | (_starts(sensor, "sensor.") if sensor else {})
+    twin, sensor = addresses.library(TWIN), addresses.library("RateSensor")
+    if parameters is None or twin is None or sensor is None:
+        return _slow(addresses, effects, overrides, reason or f"{addresses.folder} has no {TWIN}.fmu or RateSensor.fmu")
+    base = _starts(twin, "") | _starts(sensor, "sensor.")
     for name, values in parameters.items():
-        interface = sensor if name.startswith("sensor.") else twin
-        stem = name.removeprefix("sensor.") if name.startswith("sensor.") else name
-        if interface is None:
-            continue
-        prefix = "sensor." if interface is sensor else ""
-        base |= {prefix + v.name: float(x) for v, x in zip(interface.vectors[stem], values, strict=True)}
-    return base | {"tolerance": TOLERANCE, "longest_step": LONGEST}
+        prefix, interface = ("sensor.", sensor) if name.startswith("sensor.") else ("", twin)
+        base |= {prefix + v.name: float(x) for v, x in zip(interface.vectors[name.removeprefix(prefix)], values, strict=True)}
+    base |= {"tolerance": TOLERANCE, "longest_step": LONGEST}
+    return Vehicle(addresses, maker(addresses, base), base, lambda address: slots_of(addresses, address))
+
+
+def _slow(addresses: Addresses, effects: Mapping[str, Effect], overrides: Sequence[str], reason: str) -> Vehicle:
+    path = addresses.blueprint.path
+    if path is None:
+        raise UserError(f"{addresses.where}: {reason}, and the scenario is no file; save it")
+    inserts = tuple({e.insert.unit: e.insert for e in effects.values() if e.insert is not None}.values())
+    base = unit_base(addresses, inserts)
+    make = MasterLanderMaker(path, inserts, tuple(overrides))
+
+    def slots(address: str) -> list[list[str]]:
+        return [[address]] if address.startswith(f"{CLOCK}.") else unit_slots(addresses, address)
+
+    return Vehicle(addresses, DifferingMaker(make, base), base, slots, reason)
+
+
+@dataclass(frozen=True)
+class DifferingMaker:
+    """Landers that are told only what differs from the scenario: a unit to be added comes in with the first value it is given."""
+
+    make: Callable[[], Lander]
+    base: Mapping[str, float]
+
+    def __call__(self) -> Lander:
+        return DifferingLander(self.make(), self.base)
+
+
+class DifferingLander:
+    """See DifferingMaker."""
+
+    def __init__(self, lander: Lander, base: Mapping[str, float]) -> None:
+        self.lander, self.base = lander, base
+
+    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+        return self.lander.land({n: v for n, v in values.items() if self.base.get(n) != v}, grid, columns, final)
+
+    def close(self) -> None:
+        self.lander.close()
 
 
 def _starts(interface: Interface, prefix: str) -> dict[str, float]:
@@ -113,9 +162,9 @@ def slots_of(addresses: Addresses, address: str) -> list[list[str]]:
     return [list(part) for part in parts if part]
 
 
-def nuisances_of(addresses: Addresses, prior: Prior, landing: int, base: dict[str, float]) -> list[Coordinate]:
+def nuisances_of(vehicle: Vehicle, prior: Prior, landing: int, base: dict[str, float]) -> list[Coordinate]:
     """Coordinates of one prior; its mean becomes the landing's base value."""
-    groups = slots_of(addresses, prior.name)
+    groups = vehicle.slots(prior.name)
     means = np.atleast_1d(prior.mean)
     if len(groups) != len(means):
         raise MeasuredError(f"prior.{prior.name}: gives {len(means)} numbers, expects {len(groups)}; give one for each component")
@@ -143,7 +192,7 @@ def nuisances_of(addresses: Addresses, prior: Prior, landing: int, base: dict[st
     return found
 
 
-def tolerances_of(addresses: Addresses, path: Path) -> list[Coordinate]:
+def tolerances_of(vehicle: Vehicle, path: Path) -> list[Coordinate]:
     """The bands of `scenarios/tolerances.toml` that mean something in this scenario."""
     try:
         table = tomllib.loads(path.read_text("utf-8"))["tolerances"]
@@ -151,24 +200,23 @@ def tolerances_of(addresses: Addresses, path: Path) -> list[Coordinate]:
         raise ScenarioError(f"{path}: no table of tolerances ({error}); restore the file") from None
     found = []
     for address, entry in table.items():
-        groups = slots_of(addresses, address)
-        slots = tuple((name, 1.0) for group in groups for name in group)
-        if slots and any(float(x) != 0.0 for x in np.atleast_1d(addresses.base_value(address))):
+        slots = tuple((name, 1.0) for group in vehicle.slots(address) for name in group)
+        if slots and any(vehicle.base.get(name, 0.0) != 0.0 for name, _ in slots):
             found.append(Coordinate(address, slots, float(entry["sigma_log"]), operation="scale", step=TOLERANCE_STEP))
     return found
 
 
-def hypothesis_of(addresses: Addresses, effect: Effect) -> Hypothesis | str:
+def hypothesis_of(vehicle: Vehicle, effect: Effect) -> Hypothesis | str:
     """The effect in the lander's terms, or why it has none here."""
     coordinates = []
     for parameter in effect.parameters:
         slots: list[tuple[str, float]] = []
         for sign, address in parameter.signed_targets():
-            groups = slots_of(addresses, address)
+            groups = vehicle.slots(address)
             if not groups:
-                return f"{address} is not in the twin"
+                return f"{address} is not in what the search flies"
             slots += [(name, sign) for group in groups for name in group]
-        coordinates.append(_coordinate(parameter, tuple(slots), _fixed(addresses, effect)))
+        coordinates.append(_coordinate(parameter, tuple(slots), _fixed(vehicle, effect)))
     starts = tuple(tuple(start[p.name] for p in effect.parameters) for start in effect.starts)
     return Hypothesis(effect.name, tuple(coordinates), starts)
 
@@ -191,11 +239,11 @@ def _coordinate(parameter: Parameter, slots: tuple[tuple[str, float], ...], fixe
     )
 
 
-def _fixed(addresses: Addresses, effect: Effect) -> tuple[tuple[str, float], ...]:
+def _fixed(vehicle: Vehicle, effect: Effect) -> tuple[tuple[str, float], ...]:
     found: list[tuple[str, float]] = []
     for address, value in effect.fixed.items():
         values = value if isinstance(value, list) else [value]
-        groups = slots_of(addresses, address)
+        groups = vehicle.slots(address)
         for i, group in enumerate(groups):
             found += [(name, float(values[min(i, len(values) - 1)])) for name in group]
     return tuple(found)
@@ -233,16 +281,19 @@ def _column(addresses: Addresses, channel: str, where: str) -> str:
     return column.removeprefix("sensor.")
 
 
-def set_up(blueprint: Blueprint, measured: Sequence[Measured], effects: Mapping[str, Effect], tolerances: Path) -> Setup:
+def set_up(
+    blueprint: Blueprint, measured: Sequence[Measured], effects: Mapping[str, Effect], tolerances: Path, overrides: Sequence[str] = ()
+) -> Setup:
     """Everything, or one line about what does not fit together."""
     addresses = Addresses(blueprint)
-    base = fast_base(addresses)
+    vehicle = vehicle_of(addresses, effects, overrides)
+    base = vehicle.base
     bases, observations, nuisances, stops = [], [], [], []
     for k, one in enumerate(measured):
         own = dict(base)
         landing = SHARED if len(measured) == 1 else k
         for prior in one.prior:
-            nuisances += nuisances_of(addresses, prior, landing, own)
+            nuisances += nuisances_of(vehicle, prior, landing, own)
         nuisances.append(Coordinate(ORIGIN, ((ORIGIN, 1.0),), ORIGIN_SIGMA, unit="s", landing=landing, step=0.5))
         observation = observation_of(addresses, one)
         bases.append(own)
@@ -250,12 +301,13 @@ def set_up(blueprint: Blueprint, measured: Sequence[Measured], effects: Mapping[
         stops.append(blueprint.scenario.table.stop_time)
     hypotheses, skipped = [], {}
     for name, effect in effects.items():
-        found = hypothesis_of(addresses, effect)
+        found = hypothesis_of(vehicle, effect) if not (vehicle.why_slow and effect.insert) else "it adds a unit, and the search is slow"
         if isinstance(found, str):
             skipped[name] = found
         else:
             hypotheses.append(found)
-    make = maker(addresses, base)
     landings = Landings(observations, bases, stops)
     names = [one.folder.name for one in measured]
-    return Setup(addresses, make, base, landings, names, nuisances, tolerances_of(addresses, tolerances), hypotheses, skipped)
+    return Setup(
+        addresses, vehicle.make, base, landings, names, nuisances, tolerances_of(vehicle, tolerances), hypotheses, skipped, vehicle.why_slow
+    )
