@@ -301,7 +301,8 @@ def set_up(
         stops.append(blueprint.scenario.table.stop_time)
     hypotheses, skipped = [], {}
     for name, effect in effects.items():
-        found = hypothesis_of(vehicle, effect) if not (vehicle.why_slow and effect.insert) else "it adds a unit, and the search is slow"
+        adds = effect.insert is not None and not addresses.has(effect.insert.unit)
+        found = "it adds a unit, and the search is slow" if adds and vehicle.why_slow else hypothesis_of(vehicle, effect)
         if isinstance(found, str):
             skipped[name] = found
         else:
