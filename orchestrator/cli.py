@@ -1,4 +1,4 @@
-"""The command line: `orchestrator run`, `resume`, `show`, `list`. Exit codes stand in orchestrator.errors."""
+"""The command line: `orchestrator run`, `resume`, `show`, `list`, `diagnose`, `distinguish`. Exit codes stand in orchestrator.errors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from orchestrator.diagnosis.command import diagnose
+from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
@@ -130,6 +130,7 @@ def show(scenario: ScenarioName, overrides: Overrides = None) -> None:
 
 
 app.command()(diagnose)
+app.command()(distinguish)
 
 
 @app.command("list")

@@ -59,6 +59,34 @@ def diagnose(
         raise typer.Exit(EXIT[diagnosis.outcome.verdict])
 
 
+def distinguish(
+    scenario: Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")],
+    measured: MeasuredFolders,
+    effects: Annotated[list[Path] | None, typer.Option(help="Folder of effects of your own, beside the library; may be repeated.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the report [default: results/SCENARIO-distinguish].")] = None,
+    workers: Annotated[int, typer.Option(help="Processes; 0: one a core.")] = 0,
+    seed: Annotated[int, typer.Option(help="0: at the means of the priors; another: at a draw from them.")] = 0,
+    overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
+) -> None:
+    """Before any diagnosis: which effects data like these could tell apart at all, and which more sensor would help."""
+    from os import cpu_count
+
+    from orchestrator.diagnosis.diagnose import Request
+    from orchestrator.diagnosis.distinguish import distinguish as compare
+    from orchestrator.diagnosis.report import terminal_distinguish, write_distinction
+
+    path = find_scenario(scenario)
+    folder = out or Path("results") / f"{path.stem}-distinguish"
+    with _stages(quiet) as told:
+        table, skipped = compare(Request(path, measured, (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or ()), told)
+        write_distinction(folder, table)
+    for name, why in skipped.items():
+        typer.echo(f"warning: effect {name} is left out: {why}", err=True)
+    if not quiet:
+        Console().print(terminal_distinguish(table, folder))
+
+
 @contextmanager
 def _stages(quiet: bool) -> Iterator[Any]:
     """A bar a stage on a terminal (stderr), nothing in a pipe."""

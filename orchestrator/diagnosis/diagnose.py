@@ -72,7 +72,7 @@ class Diagnosis:
 
 def library(request: Request) -> dict[str, Effect]:
     """The project's effects and the user's own."""
-    return load_library([_beside_scenarios(LIBRARY.name), *request.effects])
+    return load_library([beside_scenarios(LIBRARY.name), *request.effects])
 
 
 def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
@@ -87,7 +87,7 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
         measured=[str(p) for p in request.measured],
         holdout=[str(p) for p in request.holdout],
     )
-    tolerances = _beside_scenarios("tolerances.toml")
+    tolerances = beside_scenarios("tolerances.toml")
     setup = set_up(blueprint, measured, effects, tolerances, request.overrides)
     outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
     if setup.why_slow:
@@ -242,7 +242,7 @@ def _faulty(outcome: Outcome, measured: Sequence[Measured]) -> bool:
     return bool(found)
 
 
-def _beside_scenarios(name: str) -> Path:
+def beside_scenarios(name: str) -> Path:
     """A file or folder of the project's scenarios folder."""
     folder = scenario_folder() or Path(__file__).resolve().parents[2] / "scenarios"
     beside = folder / name

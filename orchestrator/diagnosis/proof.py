@@ -234,7 +234,9 @@ def _checks(flown: Sequence[Flown], numerics: Numerics) -> dict[str, Any]:
         enough = returned > RETURNS * max(closed, 0.0) and returned > 0.0
         checks["ablation"] = {"chi2_returns": returned, "chi2_closed": closed, "ok": enough}
     if np.isfinite(chi2[PLACEBO]):
-        checks["placebo"] = {"chi2_more": chi2[PLACEBO] - chi2[WINNER], "ok": chi2[PLACEBO] > chi2[WINNER]}
+        both = {it.landing for it in flown if it.belief == PLACEBO}  # a runner-up need not have been fitted to the held-out landings
+        more = chi2[PLACEBO] - _total([it for it in flown if it.landing in both], WINNER)
+        checks["placebo"] = {"chi2_more": more, "ok": more > 0.0}
     return checks
 
 

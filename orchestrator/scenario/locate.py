@@ -18,10 +18,10 @@ def scenario_folder() -> Path | None:
 
 
 def all_scenarios() -> list[Path]:
-    """Those of the folder and of the folders in it; `candidates` holds effects."""
+    """Those of the folder and of the folders in it; `candidates` holds effects, `measured` data."""
     folder = scenario_folder()
     found = sorted(folder.rglob("*.toml")) if folder else []
-    return [path for path in found if "candidates" not in path.relative_to(folder or path).parts]
+    return [path for path in found if not {"candidates", "measured"} & set(path.relative_to(folder or path).parts)]
 
 
 def find_scenario(text: str) -> Path:

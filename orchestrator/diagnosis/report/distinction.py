@@ -40,6 +40,7 @@ class MoreSensor:
     sigma: float
     unit: str
     splits: list[list[str]] = field(default_factory=list)
+    """What becomes of each group that falls apart; names that stay together are one entry, "a + b"."""
     reveals: list[str] = field(default_factory=list)
 
 
@@ -69,7 +70,9 @@ class Distinction:
         return sorted(others, key=lambda e: -e.lambda_ if isfinite(e.lambda_) else np.inf)
 
     def title(self, name: str) -> str:
-        return next((e.title for e in self.effects if e.name == name and e.title), name)
+        """In words; of several that stay together ("a + b"), each."""
+        titles = {e.name: e.title or e.name for e in self.effects}
+        return " + ".join(titles.get(part, part) for part in name.split(" + "))
 
     def likeness(self) -> Array:
         """|cos|, symmetric, 1 on the diagonal, 0 where it is no number: the sign of an effect is free."""
