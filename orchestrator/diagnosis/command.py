@@ -78,8 +78,9 @@ def distinguish(
 
     path = find_scenario(scenario)
     folder = out or Path("results") / f"{path.stem}-distinguish"
+    request = Request(path, measured, (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or ())
     with _stages(quiet) as told:
-        table, skipped = compare(Request(path, measured, (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or ()), told)
+        table, skipped = compare(request, told)
         write_distinction(folder, table)
     for name, why in skipped.items():
         typer.echo(f"warning: effect {name} is left out: {why}", err=True)

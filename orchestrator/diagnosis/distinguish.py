@@ -100,10 +100,8 @@ def distinction(
     signatures, cosine, alike = _judged(jacobian, flown, with_all.measured)
     known = {h.name: h for h in hypotheses}
     table = Distinction("", [], [_seen(s, known[s.name], effects) for s in signatures], cosine, alike)
-    units = {s.name: s for s in SENSORS}
-    for name, rows in with_all.rows.items():
-        more = _more(table, units[name], _judged(jacobian, flown, np.concatenate([with_all.measured, rows])))
-        table.sensors.append(more)
+    for sensor, rows in with_all.rows.items():
+        table.sensors.append(_more(table, sensor, _judged(jacobian, flown, np.concatenate([with_all.measured, rows]))))
     table.sensors.sort(key=lambda s: -(len(s.splits) + len(s.reveals)))
     return table
 

@@ -49,8 +49,8 @@ class Equipped:
     landings: Landings
     measured: Array
     """Rows that the data have, of all rows."""
-    rows: dict[str, Array]
-    """Rows of each sensor by its name."""
+    rows: dict[Sensor, Array]
+    """Rows of each sensor."""
 
 
 def equipped(landings: Landings, sensors: Sequence[Sensor] = SENSORS) -> Equipped:
@@ -59,7 +59,7 @@ def equipped(landings: Landings, sensors: Sequence[Sensor] = SENSORS) -> Equippe
     observations = [_with(o, news, stop) for o, stop in zip(landings.observations, landings.stop, strict=True)]
     larger = Landings(observations, landings.bases, landings.stop)
     measured: list[Array] = []
-    rows: dict[str, list[Array]] = {s.name: [] for s in news}
+    rows: dict[Sensor, list[Array]] = {s: [] for s in news}
     for old, new, part in zip(landings.observations, observations, larger.parts, strict=True):
         places = [np.arange(part.start + p.start, part.start + p.stop) for p in new.places]
         first = len(new.tracks)
@@ -68,9 +68,9 @@ def equipped(landings: Landings, sensors: Sequence[Sensor] = SENSORS) -> Equippe
         for s in news:
             count = len(s.columns)
             at = track if s.rate else reading
-            rows[s.name] += places[at : at + count]
+            rows[s] += places[at : at + count]
             track, reading = (track + count, reading) if s.rate else (track, reading + count)
-    return Equipped(larger, np.concatenate(measured), {name: np.concatenate(parts) for name, parts in rows.items()})
+    return Equipped(larger, np.concatenate(measured), {s: np.concatenate(parts) for s, parts in rows.items()})
 
 
 def _with(observation: Observation, sensors: Sequence[Sensor], stop: float) -> Observation:
