@@ -26,7 +26,7 @@ DEPTH = Sensor("depth at rest", ("soil1.penetration",), 0.002, "m")
 
 
 class Lines:
-    """Pitch takes up offset + (first + second) t, roll third t; the second effect alone shows in the strut's load; late does nothing alone."""
+    """Pitch takes up offset + (first + second) t, roll third t; the second alone shows in the strut's load; late does nothing alone."""
 
     def land(self, values: Mapping[str, float], grid: Any, columns: Sequence[str], final: Sequence[str]) -> Course:
         v = {"offset": 0.0, "first": 0.0, "second": 0.0, "third": 0.0, "late": 0.0, **values}
