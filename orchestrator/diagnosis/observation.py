@@ -21,7 +21,7 @@ ORIGIN = "time.origin"
 CLOCK = "clock."
 FILL = 0.02  # s: the search's own grid between the samples
 CLOSE = 1e-3  # s: samples closer than this share a point of the grid
-EDGE = 0.05  # of an interval's width: how sharply its ends are meant
+EDGE = 0.05  # of an interval's width, of one open to one side the end it has: how sharply its ends are meant
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,12 @@ class Reading:
     interval: bool = False
     kind: str = "rest"
     """rest: of `Course.final`; peak: the largest magnitude of a column, with its sign; time: an instant of the data's clock."""
+
+    @property
+    def edge(self) -> float:
+        """What counts as one standard deviation outside an interval. One open to a side has no width, and must not weigh nothing."""
+        width = self.high - self.low
+        return EDGE * (width if np.isfinite(width) else abs(self.high if np.isfinite(self.high) else self.low))
 
 
 class Observation:
@@ -163,14 +169,14 @@ def _missed(reading: Reading, value: float) -> float:
     if not reading.interval:
         return (reading.value - value) / reading.sigma
     outside = max(reading.low - value, 0.0) - max(value - reading.high, 0.0)
-    return outside / (EDGE * (reading.high - reading.low))
+    return outside / reading.edge
 
 
 def _weight(reading: Reading, value: float) -> float:
     """How fast the residual of a reading falls with its prediction."""
     if not reading.interval:
         return 1.0 / reading.sigma
-    return 0.0 if reading.low <= value <= reading.high else 1.0 / (EDGE * (reading.high - reading.low))
+    return 0.0 if reading.low <= value <= reading.high else 1.0 / reading.edge
 
 
 def _places(sizes: Sequence[int]) -> list[slice]:

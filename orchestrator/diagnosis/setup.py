@@ -271,7 +271,10 @@ def _reading(addresses: Addresses, scalar: Scalar, where: str) -> Reading:
     column = _column(addresses, scalar.name.removeprefix("peak."), f"{where}: values.{scalar.name}")
     interval = scalar.kind == "interval"
     kind = "peak" if peak else "time" if scalar.name.startswith("contact_time.") else "rest"
-    return Reading(scalar.name, column, scalar.value, scalar.sigma if not interval else 1.0, scalar.low, scalar.high, interval, kind)
+    found = Reading(scalar.name, column, scalar.value, scalar.sigma if not interval else 1.0, scalar.low, scalar.high, interval, kind)
+    if interval and found.edge == 0.0:
+        raise MeasuredError(f"{where}: values.{scalar.name}: one end, at 0, does not tell how sharply it is meant; give low and high")
+    return found
 
 
 def _column(addresses: Addresses, channel: str, where: str) -> str:
