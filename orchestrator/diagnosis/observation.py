@@ -53,6 +53,7 @@ class Reading:
     interval: bool = False
     kind: str = "rest"
     """rest: of `Course.final`; peak: the largest magnitude of a column, with its sign; time: an instant of the data's clock."""
+    unit: str = ""
 
     @property
     def edge(self) -> float:

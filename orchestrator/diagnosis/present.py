@@ -211,6 +211,4 @@ def _rest(observation: Observation, i: int, before: Array, after: Array | None) 
     low, high = (reading.low, reading.high) if reading.interval else (None, None)
     sigma = None if reading.interval else reading.sigma
     then = None if after is None else float(after[row])
-    return RestValue(
-        reading.name, "m" if reading.kind == "rest" else "", float(before[row]), float(before[row]), then, value, sigma, low, high
-    )
+    return RestValue(reading.name, reading.unit, float(before[row]), float(before[row]), then, value, sigma, low, high)

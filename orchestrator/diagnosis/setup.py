@@ -271,7 +271,8 @@ def _reading(addresses: Addresses, scalar: Scalar, where: str) -> Reading:
     column = _column(addresses, scalar.name.removeprefix("peak."), f"{where}: values.{scalar.name}")
     interval = scalar.kind == "interval"
     kind = "peak" if peak else "time" if scalar.name.startswith("contact_time.") else "rest"
-    found = Reading(scalar.name, column, scalar.value, scalar.sigma if not interval else 1.0, scalar.low, scalar.high, interval, kind)
+    sigma = 1.0 if interval else scalar.sigma
+    found = Reading(scalar.name, column, scalar.value, sigma, scalar.low, scalar.high, interval, kind, scalar.unit)
     if interval and found.edge == 0.0:
         raise MeasuredError(f"{where}: values.{scalar.name}: one end, at 0, does not tell how sharply it is meant; give low and high")
     return found

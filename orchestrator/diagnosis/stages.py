@@ -130,8 +130,9 @@ def try_pairs(state: State) -> None:
     best = state.fits[singles[0]] if singles else state.base
     if not singles or adequacy(best, state.setup.landings).p >= ADEQUATE:
         return
+    seconds = list(state.hypotheses)
     for name in singles:
-        for pair, (hypothesis, fit) in state.search.fit_seconds(known[name], state.fits[name], state.hypotheses).items():
+        for pair, (hypothesis, fit) in state.search.fit_seconds(known[name], state.fits[name], seconds).items():
             swapped_name = " + ".join(reversed(pair.split(" + ")))
             if swapped_name not in state.fits:
                 state.fits[pair] = fit

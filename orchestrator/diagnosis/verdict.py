@@ -80,11 +80,12 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     if not standing:
         if null.adequacy >= LOST and best.adequacy >= ADEQUATE:
             return Judgement("nothing_missing", (), found, f"{best.name} fits better, but not on the held-out landing")
+        held = "" if best.holdout_gain is None else " or fails on the held-out landing"
         return Judgement(
             "none_of_my_effects",
             (),
             found,
-            f"the best of the library, {best.name}, leaves more than noise or fails on the held-out landing",
+            f"the best of the library, {best.name}, leaves more than noise{held}",
         )
     if len(credible) == 1 and standing:
         return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
