@@ -6,13 +6,15 @@ apart than usual ρ is raised to that distance. Taking coloured noise as white t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-STILL = 40  # samples needed to judge a noise by
+STILL = 40  # samples of a series needed to judge its noise by
+LOST = 3  # numbers of a parabola
 LEAST = 0.5  # of the stated σ: data may be quieter than said, the model is not
 
 
@@ -23,6 +25,16 @@ class Noise:
     sigma: float
     rho: float
     interval: float
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Residual of one channel, and which of its samples were taken at rest."""
+
+    times: Array
+    residual: Array
+    still: NDArray[np.bool_]
+    sigma: float
 
 
 class Whitening:
@@ -50,35 +62,56 @@ def typical_interval(times: Array) -> float:
     return float(np.median(np.diff(times))) if len(times) > 1 else 1.0
 
 
-def colour_of(residual: Array) -> tuple[float, float]:
-    """σ and ρ (0 to 0.97) of a stretch of nothing but noise, by its autocovariances at lags 0 to 3, corrected for the removed mean and slope."""
-    n = len(residual)
-    t = np.linspace(-1.0, 1.0, n)
-    r = residual - np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, residual, 2))
-    rho = 0.0
-    for _ in range(3):  # taking out three numbers makes coloured noise look whiter and smaller
-        lost = 3.0 * (1.0 + rho) / max(1.0 - rho, 1e-3) / n
-        c = [float(r[k:] @ r[: n - k]) / (n - k) for k in range(3)]
-        variance = c[0] / max(1.0 - lost, 0.3)
-        missing = variance - c[0]
-        rho = float(np.clip((c[1] + missing) / variance, 0.0, 0.97)) if variance > 0.0 else 0.0
-    return float(np.sqrt(max(c[0] / max(1.0 - 3.0 * (1.0 + rho) / max(1.0 - rho, 1e-3) / n, 0.3), 0.0))), rho
+def noise_of(tracks: Sequence[Stretch], colour: float | None) -> list[Noise]:
+    """Noise of the channels of one series, which have one instrument and one colour, from stretches in which the vehicle rests.
 
-
-def noise_of(times: Array, residual: Array, still: NDArray[np.bool_], sigma: float, colour: float | None) -> Noise:
-    """Noise of a channel from its stated σ and colour, and from a stretch in which the vehicle rests.
-
-    still   mask of samples at rest. The stated numbers stand unless the stretch contradicts them by more than three standard errors.
+    The stated σ are taken in proportion; ρ and their common factor are estimated. The factor makes the INNOVATIONS as large as they are:
+    they are what a whitened residual is measured by, and hardly depend on an error of ρ, where σ and ρ by themselves would matter threefold.
     """
-    interval = typical_interval(times)
-    quiet = residual[still]
-    if len(quiet) < STILL:
-        return Noise(sigma, 0.0 if colour is None else colour, interval)
-    seen, rho = colour_of(quiet)
-    if colour is not None:
-        rho = colour
-    elif rho < 2.0 / np.sqrt(len(quiet)):
-        rho = 0.0
-    independent = len(quiet) * (1.0 - rho**2) / (1.0 + rho**2)
-    contradicted = seen > 0.0 and abs(np.log(seen / sigma)) > 3.0 / np.sqrt(2.0 * independent)
-    return Noise(max(seen, LEAST * sigma) if contradicted else sigma, rho, interval)
+    intervals = [typical_interval(t.times) for t in tracks]
+    quiet = [_detrended(t.residual[t.still] / t.sigma) for t in tracks]
+    known = sum(len(u) for u in quiet)
+    if known < STILL:
+        return [Noise(t.sigma, colour or 0.0, interval) for t, interval in zip(tracks, intervals, strict=True)]
+    rho = _rho(quiet) if colour is None else colour
+    rho = 0.0 if colour is None and rho < 2.0 / np.sqrt(known) else rho
+    factor = np.sqrt(_innovation(quiet, rho) / (1.0 - rho**2))
+    if rho == 0.0 and abs(np.log(factor)) < 3.0 / np.sqrt(2.0 * known):
+        factor = 1.0
+    factor = max(float(factor), LEAST)
+    return [Noise(factor * t.sigma, rho, interval) for t, interval in zip(tracks, intervals, strict=True)]
+
+
+def _detrended(u: Array) -> Array:
+    """Without the parabola that a slow settling leaves."""
+    if len(u) <= LOST:
+        return np.zeros(0)
+    t = np.linspace(-1.0, 1.0, len(u))
+    return np.asarray(u - np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, u, LOST - 1)))
+
+
+def _rho(quiet: Sequence[Array]) -> float:
+    """Lag-one autocorrelation, 0 to 0.97, corrected for what taking out a parabola hides of a coloured noise."""
+    rho = 0.0
+    for _ in range(4):
+        variance = covariance = 0.0
+        for u in quiet:
+            if len(u) == 0:
+                continue
+            hidden = min(LOST * (1.0 + rho) / max(1.0 - rho, 1e-3) / len(u), 0.6)
+            full = float(u @ u) / (1.0 - hidden)
+            variance += full
+            covariance += float(u[1:] @ u[:-1]) * len(u) / (len(u) - 1) + hidden * full
+        rho = float(np.clip(covariance / variance, 0.0, 0.97)) if variance > 0.0 else 0.0
+    return rho
+
+
+def _innovation(quiet: Sequence[Array], rho: float) -> float:
+    """Variance of u_k - ρ u_{k-1}."""
+    total = count = 0.0
+    for u in quiet:
+        if len(u) > LOST + 1:
+            steps = u[1:] - rho * u[:-1]
+            total += float(steps @ steps)
+            count += len(steps) - LOST * (1.0 - rho)
+    return total / count if count > 0.0 else 1.0 - rho**2

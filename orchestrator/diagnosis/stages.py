@@ -15,7 +15,8 @@ from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
-from orchestrator.diagnosis.noise import noise_of
+from orchestrator.diagnosis.noise import Noise, Stretch, noise_of
+from orchestrator.diagnosis.observation import Observation
 from orchestrator.diagnosis.search import Search, Told
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks import Land
@@ -77,14 +78,22 @@ def hear_noise(setup: Setup, crew: Crew, fit: Fit) -> list[Course]:
         courses.append(course)
         fast = np.max(np.abs([course.columns[name] for name in RATES]), axis=0) > RESTING
         rest = float(course.times[np.flatnonzero(fast)[-1]]) + SETTLED if fast.any() else 0.0
-        predicted = fit.predicted[part]
-        observation.set_noise(
-            [
-                noise_of(t.times, observation.raw(predicted, i), t.times - observation.shift > rest, t.sigma, t.colour)
-                for i, t in enumerate(observation.tracks)
-            ]
-        )
+        observation.set_noise(_heard(observation, fit.predicted[part], rest))
     return courses
+
+
+def _heard(observation: Observation, predicted: Array, rest: float) -> list[Noise]:
+    """Noise of every track, series by series, from samples later than `rest`, s since first contact."""
+    found: dict[int, Noise] = {}
+    for series in dict.fromkeys(t.series for t in observation.tracks):
+        places = [i for i, t in enumerate(observation.tracks) if t.series == series]
+        tracks = [observation.tracks[i] for i in places]
+        stretches = [
+            Stretch(t.times, observation.raw(predicted, i), t.times - observation.shift > rest, t.sigma)
+            for i, t in zip(places, tracks, strict=True)
+        ]
+        found |= dict(zip(places, noise_of(stretches, tracks[0].colour), strict=True))
+    return [found[i] for i in range(len(observation.tracks))]
 
 
 def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypotheses: Sequence[Hypothesis]) -> State:
