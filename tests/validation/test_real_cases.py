@@ -13,11 +13,11 @@ from orchestrator.scenario.locate import find_scenario
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 MEASURED = SCENARIOS / "measured"
-FOLDERS = sorted(path for path in MEASURED.iterdir() if path.is_dir())
+FOLDERS = sorted(path.parent for path in MEASURED.rglob("landing.toml"))
 OF_TABLE_6 = {"apollo11_photographs": "photo", "glass_zupp_like": "glass_zupp_like", "glass_adams_like": "glass_adams_like"}
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(MEASURED)))
 def test_every_shipped_folder_reads_without_a_fault_and_says_where_it_is_from(folder: Path) -> None:
     measured = read_measured(folder)
     assert measured.title
@@ -25,7 +25,7 @@ def test_every_shipped_folder_reads_without_a_fault_and_says_where_it_is_from(fo
     assert not faults(measured)
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(MEASURED)))
 def test_every_shipped_folder_names_what_its_scenario_has(folder: Path) -> None:
     path = find_scenario("apollo11_adams" if "adams" in folder.name else "apollo11_zupp")
     setup = set_up(draw_up(read_scenario(path, ()), path), [read_measured(folder)], {}, SCENARIOS / "tolerances.toml")
