@@ -90,7 +90,7 @@ def _hidden(vehicle: Vehicle, plan: Plan, scene: Scene, random: Random, skipped:
         signatures = Signatures(vehicle, scene, lander)
         if plan.kind == "twin":
             return _twin(vehicle, plan, signatures, random, skipped)
-        library = list((LAWS if plan.kind == "outside" else vehicle.effects).values())
+        library = [it for it in (LAWS if plan.kind == "outside" else vehicle.effects).values() if not already_uncertain(vehicle, it, scene)]
         first = _drawn(library, plan, signatures, random, skipped)
         if plan.kind != "two":
             return first, None
@@ -101,6 +101,12 @@ def _hidden(vehicle: Vehicle, plan: Plan, scene: Scene, random: Random, skipped:
         return Hidden(effects, z, (*first.energies, *second.energies), signatures.energy(effects, z) or 0.0), None
     finally:
         lander.close()
+
+
+def already_uncertain(vehicle: Vehicle, effect: Effect, scene: Scene) -> bool:
+    """Whether a nuisance moves the same variables as each of its parameters: it then is a nuisance beyond its prior, a decoy."""
+    known = {frozenset(name for name, _ in c.slots) for c in scene.coordinates}
+    return all(frozenset(name for name, _ in c.slots) in known for c in vehicle.coordinates(effect))
 
 
 def _drawn(library: list[Effect], plan: Plan, signatures: Signatures, random: Random, skipped: list[dict[str, Any]]) -> Hidden:
