@@ -63,7 +63,7 @@ def _revised(vehicle: Vehicle, diagnosis: Tree) -> list[tuple[Effect, Sequence[f
     named = [it for it in diagnosis.get("effects") or [] if it["name"] in vehicle.effects]
     found = [_at(vehicle, vehicle.effects[it["name"]], it["parameters"]) for it in named]
     term = diagnosis.get("term") or {}
-    value = (term.get("estimate") or {}).get("value")
+    value = (term.get("coefficient") or {}).get("value")
     if not found and term.get("fixed") and value:
         size = abs(float(value))
         exponents = {address.partition(".")[2]: value for address, value in term["fixed"].items()}

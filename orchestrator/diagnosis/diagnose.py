@@ -25,6 +25,8 @@ from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
 from orchestrator.diagnosis.stages import State, align, ask_holdouts, judged, promising, run_search, try_pairs
+from orchestrator.diagnosis.terms.find_term import find_term
+from orchestrator.diagnosis.terms.found import Found, to_outcome
 from orchestrator.diagnosis.verdict import Judged, Judgement
 from orchestrator.errors import UserError
 from orchestrator.scenario.locate import scenario_folder
@@ -68,6 +70,8 @@ class Diagnosis:
     holdout_fits: dict[str, Fit] = field(default_factory=dict)
     effects: dict[str, Effect] = field(default_factory=dict)
     judgement: Judgement | None = None
+    found: Found | None = None
+    """A term outside the library."""
 
 
 def library(request: Request) -> dict[str, Effect]:
@@ -135,11 +139,34 @@ def _searched(
         holdout_fits, gains = ask_holdouts(state, held, crew, request.seed, names, told)
     verdicts, judgement = judged(state, gains)
     diagnosis = Diagnosis(outcome, setup, held, state, holdout_fits, effects, judgement)
+    if judgement.verdict == "none_of_my_effects" and crew.flown < request.budget:
+        _look_outside(request, diagnosis, crew, told)
     fill(diagnosis, verdicts, judgement)
     outcome.simulations = crew.flown
     outcome.seconds = perf_counter() - began
     outcome.sentence = sentence(outcome)
     return diagnosis
+
+
+def _look_outside(request: Request, diagnosis: Diagnosis, crew: Crew, told: Told | None) -> None:
+    """Generic terms, where no effect of the library will do; the held-out landings are asked about the one found."""
+    setup, held, state = diagnosis.setup, diagnosis.held, diagnosis.state
+    if setup is None or state is None:
+        return
+    found = find_term(state, setup, crew, request.seed, told)
+    if found is None:
+        return
+    closure = None
+    if held is not None:
+        fits, gains = ask_holdouts(state, held, crew, request.seed, [found.name], told)
+        diagnosis.holdout_fits = {**diagnosis.holdout_fits, **fits}
+        before, after, count = fits[NULL.name].chi2, fits[found.name].chi2, held.landings.size
+        closure = 1.0 - max(after - count, 0.0) / (before - count) if before > count else None
+        if gains[found.name][0] <= 0.0:
+            diagnosis.outcome.warnings.append(f"{found.words}: worse than nothing missing on the held-out landing, and not put forward")
+            return
+    diagnosis.found = found
+    diagnosis.outcome.term = to_outcome(found, closure)
 
 
 def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement) -> None:
@@ -153,7 +180,7 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
     known = {v.name: v for v in verdicts}
     ranked = sorted(known, key=lambda n: -judgement.probabilities[n])
     outcome.candidates = [_candidate(diagnosis, known[n], judgement) for n in ranked[:SHOWN]]
-    best = state.fits[ranked[0]]
+    best = diagnosis.found.fit if diagnosis.found else state.fits[ranked[0]]
     if judgement.verdict in ("effect", "effects"):
         whole = next(n for n in ranked if set(parts_of(n)) == set(judgement.names))
         best = state.fits[whole]
@@ -208,7 +235,7 @@ def _candidate(diagnosis: Diagnosis, one: Judged, judgement: Judgement) -> Candi
         raise ValueError("a candidate needs a search")
     fit, first = state.fits[one.name], len(state.search.nuisances)
     parameters = {fit.coordinates[i].name: Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in range(first, len(fit.z))}
-    titles = [diagnosis.effects[n].title for n in parts_of(one.name)]
+    titles = [diagnosis.effects[n].title if n in diagnosis.effects else n for n in parts_of(one.name)]
     p = judgement.probabilities[one.name]
     return Candidate(
         one.name, " + ".join(titles) or "Nothing missing", one.log_evidence, fit.chi2, p, one.adequacy, one.holdout_gain, parameters

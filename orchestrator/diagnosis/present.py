@@ -13,17 +13,22 @@ from orchestrator.diagnosis.crew import Crew, Store
 from orchestrator.diagnosis.diagnose import Diagnosis, Request
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.flight import CoSimulation
+from orchestrator.diagnosis.found_term import write_effect
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.moves import Named
 from orchestrator.diagnosis.observation import Observation, sampled
 from orchestrator.diagnosis.outcome import Candidate
+from orchestrator.diagnosis.places import PLACES
 from orchestrator.diagnosis.proof import NULL as BEFORE
 from orchestrator.diagnosis.proof import WINNER, Observed, Proof, prove
 from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses, RestValue, verdict_sentence, write_report
 from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import CONTACTS, look
+from orchestrator.diagnosis.term_fmu import build_term_fmu
+from orchestrator.diagnosis.terms.found import as_term
+from orchestrator.scenario.locate import find_fmu
 
 Array = NDArray[np.float64]
 UNITS = {"rates": "rad/s", "attitude": "rad"}
@@ -45,6 +50,8 @@ def present(request: Request, diagnosis: Diagnosis) -> None:
 def chosen(diagnosis: Diagnosis) -> str:
     """The hypothesis that the verdict stands for; nothing missing where it names none."""
     names = {e.name for e in diagnosis.outcome.effects}
+    if diagnosis.found is not None:
+        return diagnosis.found.name
     if diagnosis.state is None or not names:
         return NULL.name
     return next((n for n in diagnosis.state.fits if set(parts_of(n)) == names), NULL.name)
@@ -52,6 +59,8 @@ def chosen(diagnosis: Diagnosis) -> str:
 
 def _named(diagnosis: Diagnosis, name: str) -> list[Named]:
     """Effects of a hypothesis with what its own fit estimated."""
+    if diagnosis.found is not None and diagnosis.setup is not None and name == diagnosis.found.name:
+        return [as_term(diagnosis.found, diagnosis.setup.addresses).named()]
     found: dict[str, Candidate] = {c.name: c for c in diagnosis.outcome.candidates}
     if diagnosis.state is None or name not in found:
         return []
@@ -90,7 +99,7 @@ def _take_over(diagnosis: Diagnosis, proof: Proof) -> None:
     outcome = diagnosis.outcome
     outcome.checks, outcome.simulations = proof.checks, outcome.simulations + proof.simulations
     outcome.warnings += proof.warnings
-    if outcome.effects:
+    if outcome.effects or diagnosis.found:
         outcome.gap = proof.gap
     if not proof.numerics.ok:
         outcome.verdict = "numerics"
@@ -103,13 +112,30 @@ def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name
     setup, outcome = diagnosis.setup, diagnosis.outcome
     if setup is None:
         return
-    title = f"{setup.addresses.blueprint.scenario.table.title}, with {' and '.join(e.title.lower() for e in outcome.effects)}"
+    titles = [e.title for e in outcome.effects] or [named[0].effect.title]
+    title = f"{setup.addresses.blueprint.scenario.table.title}, with {' and '.join(it.lower() for it in titles)}"
     revised = write_revision(
         request.out, setup.addresses, named, title, [f"found by orchestrator diagnose; see {request.out / 'report.html'}"]
     )
     outcome.revised_scenario = str(revised)
+    if diagnosis.found is not None:
+        _keep_term(request, diagnosis, setup)
     for k, applied in enumerate(fitted_values(setup.addresses, setup.landings, diagnosis.state.fits[name] if diagnosis.state else None)):  # type: ignore[arg-type]
         write_landing(request.out, k + 1, revised, applied.values, applied.seen, setup.names[k])
+
+
+def _keep_term(request: Request, diagnosis: Diagnosis, setup: Setup) -> None:
+    """The found term as an entry for the library, and as an FMU of its own for any FMI tool."""
+    if diagnosis.found is None:
+        return
+    term = as_term(diagnosis.found, setup.addresses)
+    write_effect(request.out / "found", term)
+    place = term.coefficient.partition(".")[0]
+    units = setup.addresses.units(place)
+    fmu = setup.addresses.blueprint.interfaces[units[0]].path if units else find_fmu(PLACES[place], setup.addresses.folder, "found term")
+    if fmu is not None:
+        own = {address.partition(".")[2]: value for address, value in {**term.fixed, term.coefficient: term.estimate.value}.items()}
+        build_term_fmu(request.out / "found", fmu, own, f"{fmu.stem}With{term.name.title().replace('_', '')}", term.physics)
 
 
 def _fits(diagnosis: Diagnosis, name: str) -> list:  # type: ignore[type-arg]

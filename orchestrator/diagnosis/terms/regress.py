@@ -1,0 +1,168 @@
+"""Regression through the simulator: which generic terms the residual follows once the nuisances have had their share, and their real fits.
+
+Every term's slopes are flown at the base fit, those within reach of the best at the nuisances of the best library effect too, where the
+nuisances have absorbed less. What slopes promise picks a few terms, these get fits of their own, and the slopes at the winner's nuisances
+judge the others once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Slopes
+from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
+from orchestrator.diagnosis.terms.term import Term
+
+Array = NDArray[np.float64]
+FITTED = 8  # terms with fits of their own at first
+LATER = 4  # and after the last view
+SECOND_VIEW, LAST_VIEW = 60, 30  # terms whose slopes are flown there
+OF_EACH_PORT = 2  # among FITTED, where the port is within REACH of the best
+REACH = 30.0  # of ln evidence
+AHEAD = 3.0  # of ln evidence, by which an unfitted term must promise more than the best fit has
+REFINED = 2
+STEPS = 6
+
+
+@dataclass
+class Regression:
+    """What is known of the terms: promised by slopes at each view, and fitted."""
+
+    search: Search
+    terms: Mapping[str, Term]
+    hypotheses: Mapping[str, Hypothesis]
+    views: list[View] = field(default_factory=list)
+    promised: dict[str, float] = field(default_factory=dict)
+    """ln evidence by the last view that has the term."""
+    estimates: dict[str, tuple[int, float]] = field(default_factory=dict)
+    """View of it, z of the coefficient there."""
+    fits: dict[str, Fit] = field(default_factory=dict)
+
+    @property
+    def ports(self) -> dict[str, str]:
+        return {name: term.port for name, term in self.terms.items()}
+
+    @property
+    def evidence(self) -> dict[str, float]:
+        """Of the fits where there are any, else what is promised, but no more than the best fit has."""
+        ceiling = max((fit.log_evidence for fit in self.fits.values()), default=np.inf)
+        promised = {name: min(value, ceiling) for name, value in self.promised.items()}
+        return promised | {name: fit.log_evidence for name, fit in self.fits.items()}
+
+    def ranked(self, names: Sequence[str] | None = None) -> list[str]:
+        """By what is promised, best first."""
+        return sorted(self.promised if names is None else names, key=lambda n: -self.promised[n])
+
+    def look_from(self, view: View, names: Sequence[str]) -> Linear:
+        """Slopes of these terms at a view, and what they promise."""
+        search = self.search
+        z, own = np.concatenate([view.z, [0.0]]), (len(view.z),)
+        asks = [Slopes(search.landings, (*search.nuisances, *self.hypotheses[n].coordinates), z, view.predicted, own) for n in names]
+        columns = search._run("terms", asks)
+        view.columns = {n: column[:, 0] for n, column in zip(names, columns, strict=True)}
+        self.views.append(view)
+        found = linear(whitened(search.landings, search.nuisances, view))
+        for n, value, estimate in zip(names, found.evidence.tolist(), found.estimate.tolist(), strict=True):
+            self.promised[n] = value
+            self.estimates[n] = (len(self.views) - 1, estimate)
+        return found
+
+    def fit(self, names: Sequence[str]) -> None:
+        """Fits of their own, from where each promised most, at what it promised."""
+        search = self.search
+        tasks = []
+        for n in names:
+            place, estimate = self.estimates[n]
+            view, coordinates = self.views[place], self.hypotheses[n].coordinates
+            low, high = coordinates[0].bounds
+            start = np.concatenate([view.z, [float(np.clip(estimate, low, high))]])
+            point = Point(view.z, view.predicted, view.slopes, np.inf)
+            tasks.append(FitAt(search.landings, (*search.nuisances, *coordinates), point, start, STEPS))
+        self.keep(dict(zip(names, search._run("terms", tasks), strict=True)))
+
+    def keep(self, fits: Mapping[str, Fit | None]) -> None:
+        """Those that are better than what there was."""
+        for name, fit in fits.items():
+            if fit is not None and (name not in self.fits or fit.objective < self.fits[name].objective):
+                self.fits[name] = fit
+
+    def size(self, name: str) -> float:
+        """The coefficient as fitted, else as promised."""
+        coordinate = self.hypotheses[name].coordinates[0]
+        return coordinate.value(float(self.fits[name].z[-1]) if name in self.fits else self.estimates[name][1])
+
+    def best(self, names: Sequence[str]) -> str | None:
+        """Of these the fitted one with most evidence."""
+        return max((n for n in names if n in self.fits), key=lambda n: self.fits[n].log_evidence, default=None)
+
+
+def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Sequence[str]) -> str | None:
+    """All of it; the best of the terms `offered`, None where none of them can be flown."""
+    search = regression.search
+    regression.look_from(View(base.z, base.predicted, base.slopes), list(regression.hypotheses))
+    view = view_of(search, better) if better is not None else None
+    if view is not None:
+        regression.look_from(view, regression.ranked()[:SECOND_VIEW])
+    regression.fit(chosen(regression, offered))
+    if regression.best(offered) is None:
+        return None
+    _refine(regression, offered)
+    winner = regression.best(offered)
+    if winner is not None and _look_again(regression, winner, offered):
+        _refine(regression, offered)
+    return regression.best(offered)
+
+
+def chosen(regression: Regression, offered: Sequence[str]) -> list[str]:
+    """FITTED terms: the best of every port within reach of the best, then the best of the others."""
+    ranked = regression.ranked(offered)
+    top = regression.promised[ranked[0]]
+    counts: dict[str, int] = {}
+    first = []
+    for n in ranked:
+        port = regression.terms[n].port
+        if counts.get(port, 0) < OF_EACH_PORT and regression.promised[n] > top - REACH:
+            counts[port] = counts.get(port, 0) + 1
+            first.append(n)
+    return (first + [n for n in ranked if n not in first])[:FITTED]
+
+
+def view_of(search: Search, fit: Fit) -> View | None:
+    """A fit's nuisances without its effect, with its slopes."""
+    count = len(search.nuisances)
+    z = fit.z[:count]
+    (predicted,) = search.crew.run([Predict(search.landings, search.nuisances, (z,))])[0]
+    return None if predicted is None else View(z, predicted, fit.slopes[:, :count])
+
+
+def _look_again(regression: Regression, winner: str, offered: Sequence[str]) -> bool:
+    """From the winner's nuisances; whoever promises clearly more than it has gets a fit."""
+    view = view_of(regression.search, regression.fits[winner])
+    if view is None:
+        return False
+    names = [winner, *(n for n in regression.ranked() if n != winner)][:LAST_VIEW]
+    regression.look_from(view, names)
+    ahead = regression.fits[winner].log_evidence - AHEAD
+    late = [n for n in regression.ranked(offered) if n in names and n not in regression.fits and regression.promised[n] > ahead][:LATER]
+    regression.fit(late)
+    return regression.best(offered) != winner
+
+
+def _refine(regression: Regression, offered: Sequence[str]) -> None:
+    top = sorted((n for n in offered if n in regression.fits), key=lambda n: -regression.fits[n].log_evidence)[:REFINED]
+    near = [n for n in top if regression.fits[n].log_evidence > regression.fits[top[0]].log_evidence - REACH]
+    refined = regression.search.refine_all([regression.fits[n] for n in near], "terms")
+    regression.fits |= dict(zip(near, refined, strict=True))
+
+
+def best_of_library(fits: Mapping[str, Fit]) -> Fit | None:
+    """Whose nuisances have absorbed least."""
+    names = [n for n in fits if n != NULL.name]
+    return max((fits[n] for n in names), key=lambda fit: fit.log_evidence, default=None)
