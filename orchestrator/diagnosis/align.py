@@ -40,7 +40,7 @@ def first_contact(observation: Observation, course: Course) -> float:
 
 
 def _misfit(observation: Observation, course: Course, shift: float) -> float:
-    """Mean square distance over the tracks, each in units of its noise and a share of its range; samples far before contact count as free flight."""
+    """Mean square distance over the tracks, each in units of its noise and a share of its range; before contact the vehicle flies free."""
     total, count = 0.0, 0
     for track in observation.tracks:
         if len(track.times) == 0:
@@ -53,7 +53,7 @@ def _misfit(observation: Observation, course: Course, shift: float) -> float:
 
 
 def swapped(observation: Observation, course: Course) -> str:
-    """What is wrong with the axes of a series, if reading them in another order or with another sign fits very much better; else nothing."""
+    """What is wrong with the axes of a series, if another order or other signs fit very much better; else nothing."""
     for series in dict.fromkeys(t.series for t in observation.tracks):
         tracks = [t for t in observation.tracks if t.series == series and len(t.times)]
         if len(tracks) != 3 or any(len(t.times) != len(tracks[0].times) for t in tracks):

@@ -1,4 +1,4 @@
-"""Where on the time axis simulation and data disagree: windows of a channel whose residual is larger than noise makes it, by chance corrected."""
+"""Where on the time axis simulation and data disagree: windows whose residual is larger than noise makes it, chance corrected."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ class Observation:
         self.whitenings = [Whitening(t.times, noise) for t, noise in zip(self.tracks, noises, strict=True)]
 
     def grid(self, stop: float, values: Mapping[str, float], horizon: float = np.inf) -> Array:
-        """Instants (s since first contact) to land by: every sample as these values date it, and points between, to a little past the horizon.
+        """Instants (s since first contact) to land by: every sample as these values date it, and points between, to past the horizon.
 
         A rate has corners where pads touch: interpolated over 20 ms it would be off by half its noise, so samples are met exactly.
         """

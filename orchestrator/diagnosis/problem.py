@@ -76,7 +76,7 @@ class Model:
         return np.asarray(np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None])
 
     def slope(self, i: int, z: Array, predicted: Array) -> Array:
-        """Derivative of the prediction by z_i, by a difference that is felt: of at least FELT standard deviations in all, or of z = WIDEST."""
+        """Derivative of the prediction by z_i, by a difference that is felt: by FELT standard deviations in all, or z = WIDEST."""
         low, high = self.coordinates[i].bounds
         step = self.coordinates[i].step
         slope = np.zeros(len(predicted))

@@ -17,7 +17,7 @@ DECIDES = 25.0  # λ of the difference of two effects: enough to tell them apart
 
 
 def projected(jacobian: Array, columns: Array) -> Array:
-    """Columns as they are left by nuisances of standard normal priors: Λ = (1 + J J')^(-1/2), up to a rotation, so that norms are sqrt(λ)."""
+    """Gram matrix of columns once nuisances of standard normal priors took their share: S' (1 + J J')⁻¹ S; its diagonal is λ."""
     inner = np.linalg.inv(jacobian.T @ jacobian + np.eye(jacobian.shape[1]))
     removed = columns - jacobian @ (inner @ (jacobian.T @ columns))
     return np.asarray(columns.T @ removed)

@@ -1,4 +1,4 @@
-"""The stages of a diagnosis as steps over one search: align, fit, judge the noise, try every effect, try pairs, ask the held-out landings."""
+"""The stages of a diagnosis as steps over one search: align, fit, judge the noise, try effects and pairs, ask the held-out landings."""
 
 from __future__ import annotations
 

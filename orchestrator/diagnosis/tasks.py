@@ -130,8 +130,8 @@ class Probe:
     """A hypothesis fitted from a base fit that explains the data, or nearly: at its null, and from beyond.
 
     Nuisances that have absorbed an effect sit in a minimum of their own, where the effect's slope may point the wrong way. So the effect is
-    HELD at a size at which it would stand out by λ = ENERGY beside the nuisances, these are fitted around it, and then it is let go. If it is
-    absent, holding it costs λ/2 of φ; who pays more than HOPELESS is not let go.
+    HELD at a size at which it would stand out by λ = ENERGY beside the nuisances, these are fitted around it, and then it is let go. If it
+    is absent, holding it costs λ/2 of φ; who pays more than HOPELESS is not let go.
     """
 
     landings: Landings
