@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from orchestrator.errors import EXIT_INTERRUPTED
 from orchestrator.scenario.locate import find_scenario
 
 MeasuredFolders = Annotated[list[Path], typer.Option("--measured", help="Folder of measured data (landing.toml); may be repeated.")]
@@ -46,13 +47,17 @@ def diagnose(
     folder = out or Path("results") / f"{path.stem}-diagnosis"
     request = Request(path, measured, holdout or (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or (), budget)
     folder.mkdir(parents=True, exist_ok=True)
-    with _stages(quiet) as told:
-        diagnosis = search(request, told)
-        if verdict_only:
-            diagnosis.outcome.write(folder)
-        else:
-            told("proof by co-simulation", "", 0.0)
-            present(request, diagnosis)
+    try:
+        with _stages(quiet) as told:
+            diagnosis = search(request, told)
+            if verdict_only:
+                diagnosis.outcome.write(folder)
+            else:
+                told("proof by co-simulation", "", 0.0)
+                present(request, diagnosis)
+    except KeyboardInterrupt:
+        typer.echo(f"interrupted: {folder}: what has been flown is kept; the same command goes on from there", err=True)
+        raise typer.Exit(EXIT_INTERRUPTED) from None
     if not quiet:
         Console().print(terminal_summary(diagnosis.outcome, folder))
     if diagnosis.outcome.verdict in EXIT:

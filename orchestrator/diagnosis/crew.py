@@ -1,42 +1,50 @@
 """Who flies the landings of a search: tasks in this process, or in a crew of processes, each with a lander of its own that is reused.
 
-A task is a picklable object called with a lander. Its result depends on itself alone, so a result already in the store is taken from there:
-an interrupted diagnosis goes on where it stopped, to the same numbers.
+A task is a picklable object called with a lander. Its result depends on itself and on the FMUs alone, so a result already in the store is
+taken from there: an interrupted diagnosis goes on where it stopped, to the same numbers. Whoever flies a task, in this process or another,
+gets it through a pickle, and so does its result: which parts are one object, and how an array lies in memory, is the same everywhere.
 """
 
 from __future__ import annotations
 
 import hashlib
+import io
 import pickle
+import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from orchestrator.diagnosis.landing import Lander
 
-Result = TypeVar("Result", covariant=True)
+Result = TypeVar("Result")
+Given = TypeVar("Given", covariant=True)
 Heard = Callable[[int, int], None]
 """Called with (done, of) as tasks end."""
 
 
-class Task(Protocol[Result]):
+class Task(Protocol[Given]):
     """Something to do with a lander."""
 
-    def __call__(self, lander: Lander) -> Result: ...
+    def __call__(self, lander: Lander) -> Given: ...
 
 
 class Store:
-    """Results of tasks by content, in a folder; without one nothing is kept."""
+    """What tasks came to, by their content, in a folder; without one nothing is kept."""
 
-    def __init__(self, folder: Path | None) -> None:
+    def __init__(self, folder: Path | None, flown_by: Sequence[Path] = ()) -> None:
+        """flown_by: the FMUs; what others flew is not taken."""
         self.folder = folder
+        self._units = b"".join(hashlib.sha256(path.read_bytes()).digest() for path in flown_by)
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
 
     def key(self, task: Task[Any]) -> str:
-        return hashlib.sha256(pickle.dumps(task, protocol=5)).hexdigest()[:32] if self.folder else ""
+        return hashlib.sha256(self._units + content(task)).hexdigest()[:32] if self.folder else ""
 
     def get(self, key: str) -> tuple[bool, Any]:
         path = self.folder / key if self.folder else None
@@ -56,7 +64,7 @@ class Store:
 
 
 class Crew:
-    """Runs tasks and keeps count of the landings they flew."""
+    """Runs tasks and keeps count of the landings they flew, those of an earlier call that the store kept among them."""
 
     def __init__(self, make: Callable[[], Lander], workers: int = 1, store: Store | None = None) -> None:
         """make: a picklable maker of landers; workers: processes, 1 for this one."""
@@ -69,13 +77,14 @@ class Crew:
         """The tasks' results in their order."""
         keys = [self.store.key(task) for task in tasks]
         known = [self.store.get(key) for key in keys]
-        results: list[Any] = [result for _, result in known]
         missing = [i for i, (found, _) in enumerate(known) if not found]
         done = len(tasks) - len(missing)
+        results: list[Any] = [kept[1] if found else None for found, kept in known]
+        self.flown += sum(kept[0] for found, kept in known if found)
         for i, (flown, result) in self._each(tasks, missing):
             self.flown += flown
             results[i] = result
-            self.store.put(keys[i], result)
+            self.store.put(keys[i], (flown, result))
             done += 1
             if heard is not None:
                 heard(done, len(tasks))
@@ -89,17 +98,26 @@ class Crew:
             self._pool.shutdown(wait=False, cancel_futures=True)
             self._pool = None
 
+    def abandon(self) -> None:
+        """Close without waiting for what is being flown."""
+        processes = list((self._pool._processes or {}).values()) if self._pool is not None else []
+        self.close()
+        for process in processes:
+            process.terminate()
+
     def _each(self, tasks: Sequence[Task[Any]], which: Sequence[int]) -> Iterator[tuple[int, tuple[int, Any]]]:
         if not which:
             return
         if self.workers == 1 or len(which) == 1:
-            self._own = self._own or self.make()
+            with unbroken():
+                self._own = self._own or self.make()
             for i in which:
-                yield i, counted(tasks[i], self._own)
+                yield i, passed_on(counted(passed_on(tasks[i]), self._own))
             return
         if self._pool is None:
             self._pool = ProcessPoolExecutor(self.workers, get_context("spawn"), initializer=_begin, initargs=(self.make,))
-        futures = {self._pool.submit(_work, tasks[i]): i for i in which}
+        with unheard():
+            futures = {self._pool.submit(_work, tasks[i]): i for i in which}
         for future in as_completed(futures):
             yield futures[future], future.result()
 
@@ -112,7 +130,8 @@ class Counting:
 
     def land(self, *arguments: Any) -> Any:
         self.flown += 1
-        return self.lander.land(*arguments)
+        with unbroken():
+            return self.lander.land(*arguments)
 
     def close(self) -> None:
         self.lander.close()
@@ -125,11 +144,57 @@ def counted(task: Task[Any], lander: Lander) -> tuple[int, Any]:
     return counting.flown, result
 
 
+def content(task: Any) -> bytes:
+    """The task without regard to which of its parts are one object: equal tasks, equal bytes."""
+    written = io.BytesIO()
+    pickler = pickle.Pickler(written, protocol=5)
+    pickler.fast = True
+    pickler.dump(task)
+    return written.getvalue()
+
+
+def passed_on(thing: Result) -> Result:
+    """The thing as another process would get it."""
+    copy: Result = pickle.loads(pickle.dumps(thing, protocol=5))
+    return copy
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Ctrl-C waits: raised inside a unit, it would be that unit's error, and the landing one that cannot be flown."""
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if came:
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def unheard() -> Iterator[None]:
+    """Processes begun here never hear of Ctrl-C; who began them ends them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 _lander: Lander | None = None
 
 
 def _begin(make: Callable[[], Lander]) -> None:
     global _lander
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     _lander = make()
 
 

@@ -98,9 +98,12 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
         outcome.warnings.append(f"searched through the master, with {len(setup.hypotheses)} effects: {setup.why_slow}")
     if _faulty(outcome, [*measured, *held]):
         return Diagnosis(outcome, setup, effects=effects)
-    crew = Crew(setup.make, request.workers, Store(request.out / ".work"))
+    crew = Crew(setup.make, request.workers, Store(request.out / ".work", sorted(setup.addresses.folder.glob("*.fmu"))))
     try:
         return _searched(request, setup, _held_out(blueprint, held, tolerances, request.overrides), crew, outcome, effects, told, began)
+    except BaseException:
+        crew.abandon()
+        raise
     finally:
         crew.close()
 

@@ -47,6 +47,8 @@ def _windows(landings: Landings) -> list[tuple[str, float, float, Array]]:
     windows: list[tuple[str, float, float, Array]] = []
     for observation, part in zip(landings.observations, landings.parts, strict=True):
         for track, place in zip(observation.tracks, observation.places, strict=False):
+            if len(track.times) < FEWEST:
+                continue
             times = track.times - observation.shift
             rows = np.arange(part.start + place.start, part.start + place.stop)
             for width in WIDTHS:

@@ -21,6 +21,7 @@ ORIGIN = "time.origin"
 CLOCK = "clock."
 FILL = 0.02  # s: the search's own grid between the samples
 CLOSE = 1e-3  # s: samples closer than this share a point of the grid
+SHARPEST = 1e-6  # SI: of an end at zero
 EDGE = 0.05  # of an interval's width, of one open to one side the end it has: how sharply its ends are meant
 
 
@@ -59,7 +60,7 @@ class Reading:
     def edge(self) -> float:
         """What counts as one standard deviation outside an interval. One open to a side has no width, and must not weigh nothing."""
         width = self.high - self.low
-        return EDGE * (width if np.isfinite(width) else abs(self.high if np.isfinite(self.high) else self.low))
+        return max(EDGE * (width if np.isfinite(width) else abs(self.high if np.isfinite(self.high) else self.low)), SHARPEST)
 
 
 class Observation:
@@ -104,7 +105,7 @@ class Observation:
         near = np.searchsorted(points, own).clip(1, len(points) - 1) if len(points) > 1 else np.zeros(len(own), dtype=int)
         apart = np.minimum(np.abs(own - points[near]), np.abs(own - points[near - 1])) > 0.25 * FILL
         merged = np.sort(np.concatenate([points, own[apart], [0.0]]))
-        return np.asarray(merged[np.concatenate([[True], np.diff(merged) > CLOSE])])
+        return thinned(merged)
 
     def late(self, track: Track, values: Mapping[str, float]) -> float:
         """s by which the track's time tags run after first contact."""
@@ -146,6 +147,17 @@ class Observation:
 
     def _track(self, track: Track, course: Course, values: Mapping[str, float]) -> Array:
         return sampled(course, track.column, track.times - self.late(track, values))
+
+
+def thinned(instants: Array) -> Array:
+    """Rising instants without those that follow the last one kept within CLOSE; the first and the last stay."""
+    if bool((np.diff(instants) > CLOSE).all()):
+        return instants
+    kept = [instants[0]]
+    for instant in instants[1:-1]:
+        if instant - kept[-1] > CLOSE and instants[-1] - instant > CLOSE:
+            kept.append(instant)
+    return np.array([*kept, instants[-1]])
 
 
 def sampled(course: Course, column: str, times: Array) -> Array:

@@ -1,0 +1,71 @@
+"""Clocks and axes: when first contact was, and whether channels were swapped."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.align import STEP, first_contact, swapped
+from orchestrator.diagnosis.landing import RATES, SPIN, Course
+from orchestrator.diagnosis.observation import Observation, Track
+
+Array = NDArray[np.float64]
+GRID = np.arange(0.0, 4.0, 0.01)
+SIGMA = 0.0017
+
+
+def rates(t: Array) -> Array:
+    """Three rates of a touchdown at 0, each with its own story; free flight before."""
+    t = np.maximum(t, 0.0)
+    return np.array([
+        -0.011 - 0.03 * t * np.exp(-t / 0.4),
+        0.10 * np.sin(9.0 * t) * np.exp(-t / 0.5),
+        -0.05 + 0.25 * (1.0 - np.exp(-t / 0.05)) * np.exp(-t / 0.7) * np.cos(5.0 * t),
+    ])  # fmt: skip
+
+
+def course() -> Course:
+    y = rates(GRID)
+    spins = {name: np.gradient(row, GRID) for name, row in zip(SPIN, y, strict=True)}
+    return Course(GRID, dict(zip(RATES, y, strict=True)) | spins, {})
+
+
+Three = tuple[int, int, int]
+
+
+def observation(start: float, offset: float, stretch: float = 1.0, order: Three = (0, 1, 2), signs: Three = (1, 1, 1)) -> Observation:
+    """Rates from `start` before contact on, the clock showing `offset` at contact, a little other than the scenario's."""
+    random = np.random.default_rng(6)
+    own = np.arange(-start, 3.0, 0.04)
+    y = stretch * rates(own) + SIGMA * random.standard_normal((3, len(own)))
+    y = np.array([s * y[i] for i, s in zip(order, signs, strict=True)])
+    return Observation([Track("rates", n, n, own + offset, row, SIGMA, 0.0) for n, row in zip(RATES, y, strict=True)], [])
+
+
+@pytest.mark.parametrize("offset", [-2.0, 0.5, 7.3, 1000.0, 1.6e8])
+@pytest.mark.parametrize("start", [0.0, 0.3])
+@pytest.mark.parametrize("stretch", [1.0, 1.2])
+def test_a_clock_that_does_not_start_at_contact_is_found(offset: float, start: float, stretch: float) -> None:
+    assert first_contact(observation(start, offset, stretch), course()) == pytest.approx(offset, abs=2.0 * STEP)
+
+
+@pytest.mark.parametrize("stretch", [0.8, 1.0, 1.3])
+def test_a_clock_that_starts_at_contact_is_left_alone(stretch: float) -> None:
+    assert first_contact(observation(0.0, 0.0, stretch), course()) == 0.0
+    assert first_contact(observation(0.2, 0.0, stretch), course()) == 0.0
+
+
+def test_a_landing_without_series_has_its_contact_at_zero() -> None:
+    assert first_contact(Observation([], []), course()) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("order", "signs", "told"),
+    [((0, 2, 1), (1, 1, 1), "rates.yaw, rates.roll, rates.pitch"), ((0, 1, 2), (1, 1, -1), "rates.yaw, rates.pitch, -rates.roll")],
+)
+def test_swapped_or_turned_axes_are_told_with_how_to_read_them(order: Three, signs: Three, told: str) -> None:
+    assert told in swapped(observation(0.0, 0.0, 1.1, order, signs), course())
+
+
+@pytest.mark.parametrize("stretch", [0.5, 0.8, 1.0, 1.3, 2.0])
+def test_a_good_record_of_a_somewhat_other_landing_is_not_called_swapped(stretch: float) -> None:
+    assert swapped(observation(0.0, 0.0, stretch), course()) == ""

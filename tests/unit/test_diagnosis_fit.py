@@ -1,0 +1,127 @@
+"""Fits: the posterior and the evidence of models for which both are known."""
+
+import numpy as np
+import pytest
+from diagnosis_samples import RINGING, Line, Ringing, coordinate, one_landing, ringing_landing, tracks
+from scipy.integrate import dblquad, quad
+from scipy.stats import norm
+
+from orchestrator.diagnosis.fit import broyden, fitted, refined, seen_from
+from orchestrator.diagnosis.observation import Reading
+from orchestrator.diagnosis.problem import Model
+
+TIMES = np.linspace(0.1, 1.9, 12)
+
+
+def line(sigmas: tuple[float, float], sigma: float, positive: tuple[bool, bool] = (False, False), truth=(0.4, -0.3)) -> Model:  # type: ignore[no-untyped-def]
+    readings = [Reading("at rest", "c", truth[0] + 2.0 * truth[1] + 0.01, 0.5 * sigma)]
+    landings = one_landing(tracks(Line(), dict(zip("ab", truth, strict=True)), ["y"], TIMES, sigma, 3), readings, {"a": 0.0, "b": 0.0})
+    return Model(landings, [coordinate(n, s, p) for n, s, p in zip("ab", sigmas, positive, strict=True)], Line())
+
+
+def at_best(model: Model, z: np.ndarray | None = None):  # type: ignore[no-untyped-def]
+    z = np.zeros(len(model.coordinates)) if z is None else z
+    predicted = model.predict(z)
+    assert predicted is not None
+    fit = fitted(model, z, model.slopes(z, predicted), predicted)
+    assert fit is not None
+    return fit
+
+
+def minus_phi(model: Model, z: np.ndarray) -> float:
+    predicted = model.predict(z)
+    assert predicted is not None
+    r = model.residual(predicted)
+    return -0.5 * float(r @ r)
+
+
+def test_a_linear_model_is_fitted_to_its_posterior() -> None:
+    model = line((0.5, 0.3), 0.1)
+    fit = at_best(model)
+    zero = model.predict(np.zeros(2))
+    assert zero is not None
+    J, r = model.whitened(model.slopes(np.zeros(2), zero), zero), model.residual(zero)
+    covariance = np.linalg.inv(J.T @ J + np.eye(2))
+    np.testing.assert_allclose(fit.covariance, covariance, rtol=1e-6)
+    np.testing.assert_allclose(fit.z, covariance @ (J.T @ r), atol=1e-6)
+    value, sigma = fit.estimate(1)
+    assert value == pytest.approx(0.3 * fit.z[1])
+    assert sigma == pytest.approx(0.3 * covariance[1, 1] ** 0.5)
+
+
+@pytest.mark.parametrize("sigma", [0.05, 0.3, 3.0])
+def test_the_evidence_of_two_coordinates_is_the_integral_over_their_prior(sigma: float) -> None:
+    model = line((0.5, 0.3), sigma)
+    fit = at_best(model)
+    scale = minus_phi(model, fit.z)
+    s = np.sqrt(np.diag(fit.covariance))
+    a, b = fit.z
+
+    def density(y: float, x: float) -> float:
+        z = np.array([x, y])
+        return float(np.exp(minus_phi(model, z) - scale) * norm.pdf(x) * norm.pdf(y))
+
+    integral = dblquad(density, a - 8 * s[0], a + 8 * s[0], b - 8 * s[1], b + 8 * s[1], epsrel=1e-5, epsabs=0.0)[0]
+    assert fit.log_evidence == pytest.approx(np.log(integral) + scale, abs=2e-3)
+
+
+@pytest.mark.parametrize("truth", [0.6, 0.05, 0.0, -0.1, -0.4])
+def test_the_evidence_of_a_half_normal_coordinate_is_its_integral_on_either_side_of_the_limit(truth: float) -> None:
+    times = np.linspace(0.1, 1.9, 6)
+    landings = one_landing(tracks(Line(), {"a": truth, "b": 0.0}, ["y"], times, 0.2, 8), (), {"a": 0.0, "b": 0.0})
+    model = Model(landings, [coordinate("a", 0.5, positive=True)], Line())
+    fit = at_best(model)
+    scale = minus_phi(model, fit.z)
+    integral = quad(lambda x: 2.0 * norm.pdf(x) * np.exp(minus_phi(model, np.array([x])) - scale), 0.0, 6.0, epsrel=1e-8, limit=200)[0]
+    assert fit.z[0] >= 0.0
+    assert fit.log_evidence == pytest.approx(np.log(integral) + scale, abs=0.01)
+
+
+@pytest.mark.parametrize("truth", [(0.4, 0.3), (0.4, 0.0), (0.2, -0.3)])
+def test_the_evidence_holds_with_a_half_normal_effect_beside_a_nuisance(truth: tuple[float, float]) -> None:
+    model = line((0.5, 0.3), 0.3, (False, True), truth)
+    fit = at_best(model)
+    scale = minus_phi(model, fit.z)
+
+    def density(y: float, x: float) -> float:
+        return float(np.exp(minus_phi(model, np.array([x, y])) - scale) * norm.pdf(x) * 2.0 * norm.pdf(y))
+
+    integral = dblquad(density, -6.0, 6.0, 0.0, 6.0, epsrel=1e-5, epsabs=0.0)[0]
+    assert fit.log_evidence == pytest.approx(np.log(integral) + scale, abs=0.02)
+
+
+def test_a_limit_of_the_value_is_not_overstepped() -> None:
+    model = line((0.5, 0.3), 0.05, (False, True))
+    fit = at_best(model)
+    assert fit.z[1] == 0.0
+
+
+def test_a_nonlinear_fit_recovers_what_was_put_in() -> None:
+    truth = {"v": 1.15, "w": 0.55, "phase": 0.1, "tilt": -0.03}
+    names = list(truth)
+    model = Model(ringing_landing(truth), [coordinate(n, 0.15) for n in names], Ringing())
+    fit = refined(model, at_best(model), range(4))
+    for i, name in enumerate(names):
+        value, sigma = fit.estimate(i)
+        assert RINGING[name] + value == pytest.approx(truth[name], abs=4.0 * sigma)
+    assert fit.chi2 < 260.0
+    assert seen_from(model, fit.z, fit.predicted, fit.slopes).log_evidence == pytest.approx(fit.log_evidence)
+
+
+def test_broyden_s_formula_makes_slopes_meet_the_move_and_leaves_others_alone() -> None:
+    random = np.random.default_rng(0)
+    slopes, move, change = random.standard_normal((7, 3)), np.array([0.3, -0.1, 0.2]), random.standard_normal(7)
+    before = slopes.copy()
+    broyden(slopes, move, change)
+    np.testing.assert_allclose(slopes @ move, change)
+    across = np.cross(move, [1.0, 0.0, 0.0])
+    np.testing.assert_allclose(slopes @ across, before @ across)
+
+
+def test_what_cannot_be_flown_gives_no_fit() -> None:
+    class Crashing(Line):
+        def land(self, *_):  # type: ignore[no-untyped-def]
+            return None
+
+    model = line((0.5, 0.3), 0.1)
+    assert fitted(Model(model.landings, model.coordinates, Crashing()), np.zeros(2), np.zeros((13, 2))) is None

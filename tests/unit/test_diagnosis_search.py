@@ -1,0 +1,101 @@
+"""The whole search on a landing that is a formula: it names what was put in, and is not caught where nuisances hide it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from diagnosis_samples import RINGING, Formula, Ringing, coordinate, one_landing, ringing, ringing_landing, tracks
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.adequacy import adequacy
+from orchestrator.diagnosis.crew import Crew
+from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.problem import Model
+from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.tasks import Point, Probe
+from orchestrator.diagnosis.verdict import Judged, judge
+
+Array = NDArray[np.float64]
+NUISANCES = (coordinate("v", 0.1), coordinate("w", 0.1), coordinate("phase", 0.1), coordinate("tilt", 0.02))
+SIZES = {"lift": 0.3, "drag": 0.5, "stiff": 1.0, "bias": 0.8, "kick": 0.5, "hump": 0.2}
+EFFECTS = [Hypothesis(name, (coordinate(name, size),), ((0.5 * size,), (-0.5 * size,))) for name, size in SIZES.items()]
+HIDDEN = {"v": 1.12, "w": 0.52, "phase": -0.08, "tilt": 0.01}
+
+
+def searched(changed: Mapping[str, float]) -> tuple[dict[str, Fit], list[Judged], Search]:
+    landings = ringing_landing({**HIDDEN, **changed}, seed=1)
+    search = Search(landings, NUISANCES, (), Crew(ringing))
+    base = search.base()
+    fits = search.refine_best(search.fit_all(EFFECTS, base) | {NULL.name: base})
+    null = fits[NULL.name].log_evidence
+    return fits, [Judged(n, f.log_evidence - null, adequacy(f, landings).p) for n, f in fits.items()], search
+
+
+@pytest.mark.parametrize(("name", "size"), [("drag", 0.3), ("stiff", 0.7), ("bias", -0.5), ("kick", 0.4), ("hump", 0.15)])
+def test_a_hidden_effect_is_named_with_its_size(name: str, size: float) -> None:
+    fits, judged, _ = searched({name: size})
+    found = judge(judged, len(EFFECTS))
+    assert (found.verdict, found.names) == ("effect", (name,)), judged
+    value, sigma = fits[name].estimate(len(NUISANCES))
+    assert value == pytest.approx(size, abs=4.0 * sigma)
+
+
+def test_where_nothing_is_hidden_nothing_is_missing() -> None:
+    _, judged, _ = searched({})
+    assert judge(judged, len(EFFECTS)).verdict == "nothing_missing"
+
+
+def test_what_a_nuisance_can_do_as_well_is_not_named() -> None:
+    _, judged, _ = searched({"lift": 0.1})
+    assert judge(judged, len(EFFECTS)).names != ("lift",)
+
+
+def test_two_hidden_effects_are_found_as_a_pair() -> None:
+    fits, judged, search = searched({"drag": 0.4, "bias": 0.5})
+    assert judge(judged, len(EFFECTS)).verdict == "none_of_my_effects"
+    best = max((n for n in fits if n != NULL.name), key=lambda n: fits[n].log_evidence)
+    pairs = search.fit_seconds(next(h for h in EFFECTS if h.name == best), fits[best], EFFECTS)
+    null = fits[NULL.name].log_evidence
+    judged += [Judged(n, f.log_evidence - null, adequacy(f, search.landings).p) for n, (_, f) in pairs.items()]
+    found = judge(judged, len(EFFECTS))
+    assert (found.verdict, set(found.names)) == ("effects", {"drag", "bias"})
+
+
+class Trap(Formula):
+    """x = n + e, and y sees n in folds: beside the wrong n, the slope by e points away from the truth."""
+
+    def column(self, name: str, values: Mapping[str, float], t: Array) -> Array:
+        n, e = values["n"], values["e"]
+        if name == "x":
+            return np.full(len(t), n + e)
+        return np.asarray(1.0 - np.cos(2.6 * n) + 0.3 * n + (0.25 + 0.1 * t) * e)
+
+
+def test_a_probe_escapes_the_minimum_in_which_nuisances_hold_the_effect() -> None:
+    times = np.arange(0.05, 2.0, 0.05)
+    truth = {"n": 0.0, "e": 2.0}
+    landings = one_landing(tracks(Trap(), truth, ("x", "y"), times, 0.1, 4), (), {"n": 0.0, "e": 0.0})
+    coordinates = (coordinate("n", 1.0), coordinate("e", 1.0))
+    alone = Model(landings, coordinates[:1], Trap())
+    stuck = min(np.linspace(1.0, 3.0, 401), key=lambda n: _phi(alone, np.array([n])))
+    z = np.array([stuck])
+    predicted = alone.predict(z)
+    assert predicted is not None
+    here = Point(z, predicted, alone.slopes(z, predicted), np.inf)
+    found = Probe(landings, coordinates, here, ())(Trap())
+    assert found is not None
+    assert found.z[1] == pytest.approx(2.0, abs=0.3)
+    assert found.chi2 < 130.0
+
+
+def _phi(model: Model, z: Array) -> float:
+    predicted = model.predict(z)
+    assert predicted is not None
+    r = model.residual(predicted)
+    return 0.5 * float(r @ r + z @ z)
+
+
+def test_the_base_values_of_the_formula_are_complete() -> None:
+    assert set(RINGING) >= set(SIZES)
+    assert Ringing().column("x", RINGING, np.zeros(1))[0] == 1.0

@@ -1,0 +1,78 @@
+"""The rules of a verdict, on hypotheses whose fits are made up."""
+
+import pytest
+
+from orchestrator.diagnosis.hypothesis import NULL
+from orchestrator.diagnosis.verdict import Judged, judge, probabilities
+
+LIBRARY = 40
+FINE, POOR = 0.4, 1e-6
+
+
+def null(adequacy: float) -> Judged:
+    return Judged(NULL.name, 0.0, adequacy)
+
+
+def named(*hypotheses: Judged) -> tuple[str, tuple[str, ...]]:
+    found = judge(hypotheses, LIBRARY)
+    return found.verdict, found.names
+
+
+def test_nothing_is_missing_where_no_effect_gains_enough() -> None:
+    assert named(null(FINE)) == ("nothing_missing", ())
+    assert named(null(FINE), Judged("a", 4.9, FINE), Judged("b", -3.0, FINE)) == ("nothing_missing", ())
+
+
+def test_an_effect_must_outweigh_the_whole_library_not_only_gain_five() -> None:
+    assert named(null(FINE), Judged("a", 5.5, FINE)) == ("nothing_missing", ())
+    assert named(null(FINE), Judged("a", 7.0, FINE)) == ("effect", ("a",))
+
+
+def test_one_effect_far_ahead_of_its_rivals_is_named() -> None:
+    assert named(null(POOR), Judged("a", 60.0, FINE), Judged("b", 50.0, FINE)) == ("effect", ("a",))
+
+
+def test_effects_that_fit_alike_are_not_told_apart() -> None:
+    verdict, names = named(null(POOR), Judged("a", 60.0, FINE), Judged("b", 59.0, FINE), Judged("c", 40.0, FINE))
+    assert (verdict, names) == ("cannot_tell", ("a", "b"))
+
+
+def test_the_set_of_those_that_cannot_be_told_apart_holds_nine_tenths() -> None:
+    _, names = named(null(POOR), *(Judged(n, 60.0 - 0.1 * i, FINE) for i, n in enumerate("abcde")))
+    found = probabilities([null(POOR), *(Judged(n, 60.0 - 0.1 * i, FINE) for i, n in enumerate("abcde"))], LIBRARY)
+    assert sum(found[n] for n in names) >= 0.9
+    assert sum(found[n] for n in names[:-1]) < 0.9
+
+
+def test_a_residual_that_nothing_explains_is_none_of_the_effects() -> None:
+    assert named(null(POOR), Judged("a", 3.0, POOR)) == ("none_of_my_effects", ())
+    assert named(null(POOR), Judged("a", 60.0, POOR)) == ("none_of_my_effects", ())
+
+
+@pytest.mark.parametrize(("gain", "adequacy", "named_all_the_same"), [(5.0, FINE, True), (-0.5, FINE, False), (5.0, 1e-4, False)])
+def test_a_name_must_gain_on_the_held_out_landing_and_leave_noise_there(gain: float, adequacy: float, named_all_the_same: bool) -> None:
+    verdict, names = named(null(POOR), Judged("a", 60.0, FINE, gain, adequacy))
+    assert (verdict, names) == (("effect", ("a",)) if named_all_the_same else ("none_of_my_effects", ()))
+
+
+def test_where_nothing_missing_is_adequate_an_effect_that_fails_on_the_held_out_landing_is_nothing_missing() -> None:
+    found = judge([null(FINE), Judged("a", 9.0, FINE, -1.0, FINE)], LIBRARY)
+    assert found.verdict == "nothing_missing"
+    assert "held-out" in found.why
+
+
+def test_two_effects_at_once_are_named_where_no_single_one_does() -> None:
+    pair = Judged("a + b", 90.0, FINE)
+    assert named(null(POOR), Judged("a", 60.0, POOR), Judged("b", 20.0, POOR), pair) == ("effects", ("a", "b"))
+
+
+def test_a_pair_must_explain_more_than_a_single_effect_by_enough() -> None:
+    assert named(null(POOR), Judged("a", 60.0, FINE), Judged("a + b", 61.0, FINE)) == ("cannot_tell", ("a", "b"))
+    assert named(null(POOR), Judged("a", 60.0, FINE), Judged("a + b", 56.0, FINE)) == ("effect", ("a",))
+
+
+def test_half_of_the_prior_is_nothing_missing_and_the_library_shares_the_rest() -> None:
+    found = probabilities([Judged(NULL.name, 0.0, 1.0), *(Judged(f"e{i}", 0.0, 1.0) for i in range(LIBRARY))], LIBRARY)
+    assert found[NULL.name] == pytest.approx(0.5, abs=0.02)
+    assert found["e0"] == pytest.approx(0.5 / LIBRARY, rel=0.06)
+    assert sum(found.values()) == pytest.approx(1.0)
