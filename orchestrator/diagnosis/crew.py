@@ -7,6 +7,7 @@ gets it through a pickle, and so does its result: which parts are one object, an
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import io
 import pickle
@@ -95,15 +96,16 @@ class Crew:
             self._own.close()
             self._own = None
         if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
+            self._pool.shutdown(cancel_futures=True)
             self._pool = None
+            gc.collect()  # the pool's semaphores go with it; left to the end they are complained of as leaked
 
     def abandon(self) -> None:
         """Close without waiting for what is being flown."""
-        processes = list((self._pool._processes or {}).values()) if self._pool is not None else []
+        if self._pool is not None:
+            for process in list((self._pool._processes or {}).values()):
+                process.terminate()
         self.close()
-        for process in processes:
-            process.terminate()
 
     def _each(self, tasks: Sequence[Task[Any]], which: Sequence[int]) -> Iterator[tuple[int, tuple[int, Any]]]:
         if not which:

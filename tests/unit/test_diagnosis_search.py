@@ -13,7 +13,7 @@ from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Model
 from orchestrator.diagnosis.search import Search
-from orchestrator.diagnosis.tasks import Point, Probe
+from orchestrator.diagnosis.tasks import FitAt, Point, Probe
 from orchestrator.diagnosis.verdict import Judged, judge
 
 Array = NDArray[np.float64]
@@ -69,24 +69,25 @@ class Trap(Formula):
         n, e = values["n"], values["e"]
         if name == "x":
             return np.full(len(t), n + e)
-        return np.asarray(1.0 - np.cos(2.6 * n) + 0.3 * n + (0.25 + 0.1 * t) * e)
+        return np.asarray(0.1 * (1.0 - np.cos(15.7 * n)) + 0.3 * n + (0.25 + 0.28 * t) * e)
 
 
 def test_a_probe_escapes_the_minimum_in_which_nuisances_hold_the_effect() -> None:
     times = np.arange(0.05, 2.0, 0.05)
-    truth = {"n": 0.0, "e": 2.0}
-    landings = one_landing(tracks(Trap(), truth, ("x", "y"), times, 0.1, 4), (), {"n": 0.0, "e": 0.0})
-    coordinates = (coordinate("n", 1.0), coordinate("e", 1.0))
+    landings = one_landing(tracks(Trap(), {"n": 0.0, "e": 2.0}, ("x", "y"), times, 0.4, 4), (), {"n": 0.0, "e": 0.0})
+    coordinates = (coordinate("n"), coordinate("e"))
     alone = Model(landings, coordinates[:1], Trap())
-    stuck = min(np.linspace(1.0, 3.0, 401), key=lambda n: _phi(alone, np.array([n])))
-    z = np.array([stuck])
+    z = min((np.array([n]) for n in np.linspace(-0.5, 3.5, 201)), key=lambda z: _phi(alone, z))
     predicted = alone.predict(z)
     assert predicted is not None
     here = Point(z, predicted, alone.slopes(z, predicted), np.inf)
-    found = Probe(landings, coordinates, here, ())(Trap())
-    assert found is not None
-    assert found.z[1] == pytest.approx(2.0, abs=0.3)
-    assert found.chi2 < 130.0
+    caught = FitAt(landings, coordinates, here, np.append(z, 0.0), 8, (0,))(Trap())
+    free = Probe(landings, coordinates, here, ())(Trap())
+    assert caught is not None
+    assert free is not None
+    assert abs(caught.z[1]) < 0.5, "this trap catches nobody: the test shows nothing"
+    assert free.z[1] == pytest.approx(2.0, abs=0.3)
+    assert free.objective < caught.objective - 10.0
 
 
 def _phi(model: Model, z: Array) -> float:

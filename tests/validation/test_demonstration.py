@@ -1,41 +1,14 @@
-"""Hidden effects found from data alone, by the command line with the whole library.
-
-The landings are made with the sealed cases' generator and flown otherwise than the search flies."""
+"""Hidden effects found from data alone, by the command line with the whole library."""
 
 import json
-import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from conftest import ROOT, orchestrator
-
-sys.path.insert(0, str(ROOT / "benchmarks"))
-
-from sealed import truth
-from sealed.hidden import Hidden, Signatures
-from sealed.instruments import clean_readings, noisy, public
-from sealed.kinds import Plan
-from sealed.make import scenes_of
-from sealed.outside import LAWS
-from sealed.vehicle import Vehicle
-
-from orchestrator.diagnosis.measured import write_measured
+from conftest import orchestrator
+from hidden_landings import Case, Vehicle, write
 
 pytestmark = pytest.mark.slow
-
-
-@dataclass(frozen=True)
-class Case:
-    """What is hidden, at which signature energy (sigma squared after nuisances), and what the verdict must be."""
-
-    effect: str
-    energy: float
-    seed: int
-    verdict: str
-    names: tuple[str, ...] = ()
 
 
 CASES = {
@@ -50,30 +23,6 @@ CASES = {
 @pytest.fixture(scope="module")
 def vehicle() -> Vehicle:
     return Vehicle()
-
-
-def write(vehicle: Vehicle, case: Case, folder: Path) -> None:
-    """Two landings of one vehicle with the case's effect at the same strength in both, white noise of the stated size."""
-    plan = Plan(0, "single large" if case.effect else "null white", case.energy, 0.0, 1.0, "twin")
-    scenes = scenes_of(vehicle, plan, [case.seed])
-    random = np.random.default_rng([case.seed, 1])
-    hidden = Hidden((), (), (), 0.0)
-    if case.effect:
-        lander = vehicle.lander()
-        effect = vehicle.effects.get(case.effect) or LAWS[case.effect]
-        sized = Signatures(vehicle, scenes[0], lander).sized(effect, case.energy, random)
-        lander.close()
-        assert sized is not None, f"{case.effect} does not reach λ = {case.energy} in this landing"
-        hidden = sized
-    for name, scene in zip(("fit", "holdout"), scenes, strict=True):
-        own = [c for effect in hidden.effects for c in vehicle.coordinates(effect)]
-        fixed = {k: v for effect in hidden.effects for k, v in vehicle.fixed(effect).items()}
-        z = np.concatenate([scene.z, *(np.array(part) for part in hidden.z)])
-        values = {**fixed, **vehicle.values([*scene.coordinates, *own], z)}
-        course = truth.fly(vehicle, values, hidden.effects, "twin")
-        assert course is not None
-        readings = noisy(random, vehicle, scene.sampling, clean_readings(vehicle, scene.sampling, course, values))
-        write_measured(folder / name, public(vehicle, scene.sampling, readings, scene.known, name))
 
 
 def diagnosed(folder: Path) -> dict[str, Any]:
