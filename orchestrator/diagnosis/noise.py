@@ -66,7 +66,7 @@ def noise_of(tracks: Sequence[Stretch], colour: float | None) -> list[Noise]:
     """Noise of the channels of one series, which have one instrument and one colour, from stretches in which the vehicle rests.
 
     The stated σ are taken in proportion; ρ and their common factor are estimated. The factor makes the INNOVATIONS as large as they are:
-    they are what a whitened residual is measured by, and hardly depend on an error of ρ, where σ and ρ by themselves would matter threefold.
+    they are what a whitened residual is measured by, and hardly depend on an error of ρ; σ and ρ by themselves would matter threefold.
     """
     intervals = [typical_interval(t.times) for t in tracks]
     quiet = [_detrended(t.residual[t.still] / t.sigma) for t in tracks]

@@ -18,8 +18,8 @@ def rates(t: Array) -> Array:
     t = np.maximum(t, 0.0)
     return np.array([
         -0.011 - 0.03 * t * np.exp(-t / 0.4),
-        0.10 * np.sin(9.0 * t) * np.exp(-t / 0.5),
-        -0.05 + 0.25 * (1.0 - np.exp(-t / 0.05)) * np.exp(-t / 0.7) * np.cos(5.0 * t),
+        0.20 * np.sin(9.0 * t) * np.exp(-t / 1.5),
+        -0.05 + 0.25 * (1.0 - np.exp(-t / 0.05)) * np.exp(-t / 1.5) * np.cos(5.0 * t),
     ])  # fmt: skip
 
 
