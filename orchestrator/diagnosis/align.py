@@ -20,6 +20,7 @@ NEAR = 0.06  # s: a clock nearer to zero than this means that the data start at 
 CLEAR = 0.7  # of the misfit at zero: another clock must be better than this
 FLOOR = 0.1  # of a channel's own range: how well the base scenario may be expected to fit at all
 SWAPPED = 0.25  # of the misfit as read: a swap must be better than this
+EXACT = 0.05  # of it: a swap that fits within the floor as well needs less of a misfit as read
 
 
 def first_contact(observation: Observation, course: Course) -> float:
@@ -67,7 +68,8 @@ def swapped(observation: Observation, course: Course) -> str:
                 costs[order, signs] = float(np.square((data[:, order] * np.array(signs) - model) / scale).mean())
         as_read = costs[(0, 1, 2), (1.0, 1.0, 1.0)]
         best = min(costs, key=lambda key: costs[key])
-        if costs[best] < SWAPPED * as_read and as_read > 20.0:
+        glaring = costs[best] < SWAPPED * as_read and as_read > 20.0
+        if glaring or (costs[best] < min(EXACT * as_read, 1.0) and as_read > 5.0):
             names = [t.channel for t in tracks]
             turned = [("-" if s < 0 else "") + names[i] for i, s in zip(best[0], best[1], strict=True)]
             return (

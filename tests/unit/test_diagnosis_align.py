@@ -60,7 +60,11 @@ def test_a_landing_without_series_has_its_contact_at_zero() -> None:
 
 @pytest.mark.parametrize(
     ("order", "signs", "told"),
-    [((0, 2, 1), (1, 1, 1), "rates.yaw, rates.roll, rates.pitch"), ((0, 1, 2), (1, 1, -1), "rates.yaw, rates.pitch, -rates.roll")],
+    [
+        ((0, 2, 1), (1, 1, 1), "rates.yaw, rates.roll, rates.pitch"),
+        ((2, 0, 1), (1, 1, 1), "rates.pitch, rates.roll, rates.yaw"),
+        ((0, 1, 2), (1, 1, -1), "rates.yaw, rates.pitch, -rates.roll"),
+    ],
 )
 def test_swapped_or_turned_axes_are_told_with_how_to_read_them(order: Three, signs: Three, told: str) -> None:
     assert told in swapped(observation(0.0, 0.0, 1.1, order, signs), course())
