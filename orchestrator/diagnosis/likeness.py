@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.linalg import null_space
 from scipy.spatial.distance import squareform
 
 from orchestrator.diagnosis.report.distinction import ENOUGH
@@ -62,7 +63,7 @@ class Signature:
     visible: Array
     """(n,): the column at the size whose λ is nearest ENOUGH."""
     span: Array
-    """(n, c): all that the effect can do there; the visible column alone where it has one parameter."""
+    """(n, m): all that the effect can do there: the visible column, and its slopes in the directions across."""
     one_sided: bool = False
 
 
@@ -79,7 +80,7 @@ def signature(flown: Flown, jacobian: Array) -> Signature:
     several = flown.slopes.shape[1] > 1
     energy = max(lambdas) if several else lambdas[near_one]
     _, direction, visible = candidates[shows]
-    span = np.column_stack([visible, flown.slopes]) if several else visible[:, None]
+    span = np.column_stack([visible, flown.slopes @ null_space(direction[None, :])])
     shown = float(np.sqrt(ENOUGH / lambdas[shows])) if lambdas[shows] > 0.0 else np.inf
     return Signature(flown.name, energy, shown, direction, visible, span, flown.one_sided)
 
