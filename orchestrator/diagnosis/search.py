@@ -191,6 +191,23 @@ class Search:
                 better[name] = fit
         return fits | dict(zip(better, self.refine_all(list(better.values()), "back-substitution"), strict=True))
 
+    def once_more(self, hypotheses: Sequence[Hypothesis], fits: dict[str, Fit], winner: str) -> dict[str, Fit]:
+        """All hypotheses probed again from the best one's nuisances, where even that one leaves more than noise.
+
+        A wrong effect that fits in part draws the nuisances out of the minimum in which they hid the right one.
+        """
+        count = len(self.nuisances)
+        z = fits[winner].z[:count]
+        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
+        if predicted is None:
+            return fits
+        point = Point(z, predicted, fits[winner].slopes[:, :count], np.inf)
+        again = [h for h in hypotheses if h.name != winner]
+        tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), point, tuple(h.scaled_starts())) for h in again]
+        found = self._best_of([h.name for h in again], self._run("once more", tasks))
+        better = {n: fit for n, fit in found.items() if n not in fits or fit.objective < fits[n].objective - 0.5}
+        return self.refine_best(fits | better) if better else fits
+
     def fit_seconds(self, first: Hypothesis, fit: Fit, hypotheses: Sequence[Hypothesis]) -> dict[str, tuple[Hypothesis, Fit]]:
         """Pairs with a first effect: every second one judged by its slopes at the first one's fit, the best of them fitted."""
         others = [h for h in hypotheses if h.name != first.name and not slots_of(h) & slots_of(first)]

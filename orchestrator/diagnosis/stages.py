@@ -107,6 +107,11 @@ def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypothese
     state.fits = search.refine_best(state.fits)
     _substitute(state)
     _rehear(state, crew)
+    best = _ranked(state)[0]
+    if best != NULL.name and adequacy(state.fits[best], setup.landings).p < ADEQUATE:
+        state.fits = search.once_more(state.hypotheses, state.fits, best)
+        _substitute(state)
+        _rehear(state, crew)
     return state
 
 
