@@ -93,6 +93,7 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
     )
     tolerances = beside_scenarios("tolerances.toml")
     setup = set_up(blueprint, measured, effects, tolerances, request.overrides)
+    outcome.titles = {name: effect.title for name, effect in effects.items()}
     outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
     if setup.why_slow:
         outcome.warnings.append(f"searched through the master, with {len(setup.hypotheses)} effects: {setup.why_slow}")

@@ -126,6 +126,8 @@ class Outcome:
     events: dict[str, float] = field(default_factory=dict)
     """Simulated contacts, s."""
     seconds: float = 0.0
+    titles: dict[str, str] = field(default_factory=dict)
+    """Of every effect of the library."""
     warnings: list[str] = field(default_factory=list)
     provenance: dict[str, Any] = field(default_factory=dict)
     """What was used: versions, hashes of scenario, FMUs and data, seed, command. Name -> text or number, or a level more of them."""

@@ -158,8 +158,7 @@ def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list
     null = state.fits[NULL.name].log_evidence
     found = []
     for name, fit in state.fits.items():
-        near = fit.log_evidence > max(f.log_evidence for f in state.fits.values()) - 12.0 or name == NULL.name
-        p = adequacy(fit, state.setup.landings).p if near else 0.0
+        p = adequacy(fit, state.setup.landings).p
         gain, held = holdouts.get(name, (None, None))
         found.append(Judged(name, fit.log_evidence - null, p, gain, held))
     singles = sum(1 for h in state.hypotheses if " + " not in h.name)

@@ -75,7 +75,9 @@ def command(outcome: Outcome) -> str:
 def title_of(outcome: Outcome, name: str) -> str:
     """What an effect is called in words; its name where nobody says."""
     found = [effect.title for effect in outcome.effects if effect.name == name]
-    return next(iter(found + [c.title for c in outcome.candidates if c.name == name and c.title]), name.replace("_", " ")) or name
+    found += [c.title for c in outcome.candidates if c.name == name and c.title]
+    found += [outcome.titles[name]] if name in outcome.titles else []
+    return next(iter(found), name.replace("_", " ")) or name
 
 
 def inside(title: str) -> str:
