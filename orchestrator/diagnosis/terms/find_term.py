@@ -19,7 +19,7 @@ from orchestrator.diagnosis.terms.regress import Regression, best_of_library, re
 from orchestrator.diagnosis.terms.stability import stability
 from orchestrator.diagnosis.verdict import ADEQUATE, BEATS
 
-SECONDS = 20  # terms that are tried beside the first
+SECONDS = 12  # terms that are tried beside the first
 
 
 def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told | None = None) -> Found | None:

@@ -22,13 +22,13 @@ from orchestrator.diagnosis.terms.term import Term
 
 Array = NDArray[np.float64]
 FITTED = 8  # terms with fits of their own at first
-LATER = 4  # and after the last view
-SECOND_VIEW, LAST_VIEW = 60, 30  # terms whose slopes are flown there
+LATER = 3  # and after the last view
+SECOND_VIEW, LAST_VIEW = 40, 20  # terms whose slopes are flown there
 OF_EACH_PORT = 2  # among FITTED, where the port is within REACH of the best
 REACH = 30.0  # of ln evidence
 AHEAD = 3.0  # of ln evidence, by which an unfitted term must promise more than the best fit has
 REFINED = 2
-STEPS = 6
+STEPS = 4
 
 
 @dataclass

@@ -13,7 +13,7 @@ from orchestrator.diagnosis.setup import slots_of
 Port = Literal["soil.normal", "soil.tangential", "strut", "body", "sensor"]
 Energy = Literal["dissipative", "conservative", "active", "none"]
 WIDEST = 10.0  # sigma of the coefficient's prior
-STEPS: dict[Port, float] = {"soil.normal": 0.2, "soil.tangential": 0.03, "strut": 0.1, "body": 0.3, "sensor": 0.2}
+STEPS: dict[Port, float] = {"soil.normal": 0.3, "soil.tangential": 0.03, "strut": 0.1, "body": 0.5, "sensor": 0.2}
 """Of z, for differences: what a landing feels, but not so much that it bends."""
 
 
