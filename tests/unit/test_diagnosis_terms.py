@@ -17,7 +17,7 @@ from orchestrator.diagnosis.observation import Observation, Track
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.terms.dictionary import dictionary
-from orchestrator.diagnosis.terms.find_term import told_of
+from orchestrator.diagnosis.terms.find_term import told_of, with_second
 from orchestrator.diagnosis.terms.found import Found, to_outcome
 from orchestrator.diagnosis.terms.linear import View, White, linear, port_evidence, whitened
 from orchestrator.diagnosis.terms.regress import Regression, regressed
@@ -58,9 +58,10 @@ def hypothesis(term: Term) -> Hypothesis:
     return Hypothesis(term.name, (coordinate,))
 
 
-def regression(hidden: str, size: float) -> Regression:
-    """Of data in which `hidden` has the coefficient size times its prior's sigma."""
-    y = 0.7 * np.sin(2.0 * TIMES) + size * shape(hidden, TIMES) + SIGMA * np.random.default_rng(5).standard_normal(len(TIMES))
+def regression(hidden: str, size: float, also: str = SLIP, also_size: float = 0.0) -> Regression:
+    """Of data in which `hidden` has the coefficient size times its prior's sigma, and another term its own."""
+    signal = size * shape(hidden, TIMES) + also_size * shape(also, TIMES)
+    y = 0.7 * np.sin(2.0 * TIMES) + signal + SIGMA * np.random.default_rng(5).standard_normal(len(TIMES))
     landings = Landings([Observation([Track("s", "y", "y", TIMES, y, SIGMA, 0.0)], [])], [{"n": 0.0}], [STOP])
     search = Search(landings, [Coordinate("n", (("n", 1.0),), 1.0)], [], Crew(LinearLander))
     terms = {name: TERMS[name] for name in (*FREQUENCIES, TIMES_DEPTH)}
@@ -162,6 +163,23 @@ def test_a_law_of_the_library_that_was_refused_is_not_offered_as_new_but_named()
 
 def test_a_wrong_sign_is_told_as_active() -> None:
     assert found(SLIP, -0.6).energy == "active"
+
+
+def test_a_second_term_stands_beside_the_first_where_one_is_not_enough() -> None:
+    known = regression(STRUT, 0.6, SLIP, 0.4)
+    base = known.search.base()
+    offered = [*FREQUENCIES]
+    winner = regressed(known, base, None, offered)
+    assert winner == STRUT
+    alone = told_of(known, winner, set(offered), base.log_evidence, 0)
+    assert not alone.adequate
+    both = with_second(known, alone, offered, base.log_evidence)
+    assert both.second is not None
+    assert both.second.term.name == SLIP
+    assert both.adequate
+    assert both.name == f"{STRUT} + {SLIP}"
+    assert both.second.coefficient.value == pytest.approx(0.4 * TERMS[SLIP].sigma, rel=0.1)
+    assert to_outcome(both)["second"]["port"] == "soil.tangential"
 
 
 def test_a_view_without_terms_still_has_nuisances() -> None:

@@ -104,7 +104,7 @@ def to_outcome(found: Found, closure: float | None = None) -> dict[str, Any]:
     term = found.term
     tree: dict[str, Any] = {
         "sentence": found.sentence,
-        "name": found.name,
+        "name": term.name,
         "port": term.port,
         "unit": term.unit,
         "formula": term.formula,
