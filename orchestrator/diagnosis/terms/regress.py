@@ -2,7 +2,8 @@
 
 Every term's slopes are flown at the base fit, those within reach of the best at the nuisances of the best library effect too, where the
 nuisances have absorbed less. What slopes promise picks a few terms, these get fits of their own, and the slopes at the winner's nuisances
-judge the others once more.
+judge the others once more. A base fit that explains nothing sits in a false minimum, where slopes mislead and a wrench on the body seems to
+explain most: there the few climb from the first touch on, as the library's effects do.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
-from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.search import Search, explains
 from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Slopes
 from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
 from orchestrator.diagnosis.terms.term import Term
@@ -24,8 +25,8 @@ Array = NDArray[np.float64]
 FITTED = 8  # terms with fits of their own at first
 LATER = 3  # and after the last view
 SECOND_VIEW, LAST_VIEW = 40, 20  # terms whose slopes are flown there
-OF_EACH_PORT = 2  # among FITTED, where the port is within REACH of the best
-REACH = 30.0  # of ln evidence
+REACH = 30.0  # of ln evidence: who is further behind the best fit is not refined
+STALE = 6.0  # of ln evidence: a promise that the last view did not confirm makes no rival of the best fit
 AHEAD = 3.0  # of ln evidence, by which an unfitted term must promise more than the best fit has
 REFINED = 2
 STEPS = 4
@@ -51,9 +52,10 @@ class Regression:
 
     @property
     def evidence(self) -> dict[str, float]:
-        """Of the fits where there are any, else what is promised, but no more than the best fit has."""
+        """Of the fits where there are any, else what is promised, but no more than the best fit has; STALE less from earlier views."""
         ceiling = max((fit.log_evidence for fit in self.fits.values()), default=np.inf)
-        promised = {name: min(value, ceiling) for name, value in self.promised.items()}
+        last = len(self.views) - 1
+        promised = {name: min(value, ceiling - STALE * (self.estimates[name][0] != last)) for name, value in self.promised.items()}
         return promised | {name: fit.log_evidence for name, fit in self.fits.items()}
 
     def ranked(self, names: Sequence[str] | None = None) -> list[str]:
@@ -110,7 +112,10 @@ def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Se
     view = view_of(search, better) if better is not None else None
     if view is not None:
         regression.look_from(view, regression.ranked()[:SECOND_VIEW])
-    regression.fit(chosen(regression, offered))
+    first = chosen(regression, offered)
+    regression.fit(first)
+    if not explains(base.chi2, search.landings.size):
+        regression.keep(search.fit_all([regression.hypotheses[n] for n in first], base))
     if regression.best(offered) is None:
         return None
     _refine(regression, offered)
@@ -121,16 +126,10 @@ def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Se
 
 
 def chosen(regression: Regression, offered: Sequence[str]) -> list[str]:
-    """FITTED terms: the best of every port within reach of the best, then the best of the others."""
+    """FITTED terms: the best of every port, since a trapped base fit promises to the wrong one, then the best of the others."""
     ranked = regression.ranked(offered)
-    top = regression.promised[ranked[0]]
-    counts: dict[str, int] = {}
-    first = []
-    for n in ranked:
-        port = regression.terms[n].port
-        if counts.get(port, 0) < OF_EACH_PORT and regression.promised[n] > top - REACH:
-            counts[port] = counts.get(port, 0) + 1
-            first.append(n)
+    best = {regression.terms[n].port: n for n in reversed(ranked)}
+    first = [n for n in ranked if n in best.values()]
     return (first + [n for n in ranked if n not in first])[:FITTED]
 
 
