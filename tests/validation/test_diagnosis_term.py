@@ -3,7 +3,7 @@
 Setup      the Zupp-like touchdown of Apollo 11 by the twin's FMU, Apollo's channels every 40 ms for 2.4 s with white noise; hidden is
            F_n += c (δ/0.01 m) (|δ̇|/0.1 m/s)² while sinking; nuisances as published, drawn at random; the library has friction only
 Tolerance  the port must be right and the hidden form in the class; c within four standard deviations where the form itself was named.
-           In a like case (c = 53 N), whose base fit was no false minimum, the port led by 25 in ln evidence and the form was in a class of two
+           In a like case (c = 53 N), whose base fit was no false minimum, the port led by 25 in ln evidence, the form in a class of two
 """
 
 from dataclasses import replace
@@ -73,7 +73,7 @@ def landed(setup: Setup, measured: Measured) -> Measured:
 @pytest.mark.slow
 @pytest.mark.xfail(
     strict=False,
-    reason="from a base fit in a false minimum a torque on the body was found; since terms climb it had no result in 330 s on a loaded machine",
+    reason="from a base fit in a false minimum a torque on the body was found; since terms climb: no result in 330 s on a loaded machine",
 )
 def test_a_hidden_law_of_the_soil_is_found_at_its_port(tmp_path: Path) -> None:
     blueprint = draw_up(read_scenario(SCENARIO), SCENARIO)
