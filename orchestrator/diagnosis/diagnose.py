@@ -194,7 +194,7 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
         outcome.cannot_tell = CannotTell(list(judgement.names), tracks)
     if judgement.why:
         outcome.warnings.append(judgement.why)
-    outcome.not_excited = not_excited(state)
+    outcome.not_excited = [name for name in not_excited(state) if name in diagnosis.effects]
     ports = {n: (e.port, PLACE_OF.get(e.port, e.port)) for n, e in diagnosis.effects.items()}
     close = {n: f for n, f in state.fits.items() if n in ports and f.log_evidence > null.log_evidence + 2.0}
     outcome.where = located(null, setup.landings, close, ports)
