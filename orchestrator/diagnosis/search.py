@@ -71,10 +71,7 @@ class Search:
     def base(self) -> Fit:
         """The nuisances fitted to the base scenario, climbing from the best of many draws of their priors."""
         climbs = [Climb(self.landings, self.nuisances, z, self.horizons, self.fresh) for z in self._best_draws()]
-        together = max(1, min(self.crew.workers, len(climbs)))
-        paths = [path for path in self._run("base fit", climbs[:together]) if path]
-        if len(climbs) > together and not any(explains(path[-1][1].chi2, self.landings.size) for path in paths):
-            paths += [path for path in self._run("base fit", climbs[together:]) if path]
+        paths = [path for path in self._run("base fit", climbs) if path]
         if not paths:
             raise UnflyableError
         best = min(paths, key=lambda path: path[-1][1].objective)

@@ -8,7 +8,7 @@ from diagnosis_samples import RINGING, Formula, Ringing, coordinate, one_landing
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.adequacy import adequacy
-from orchestrator.diagnosis.crew import Crew
+from orchestrator.diagnosis.crew import Crew, content
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Model
@@ -60,6 +60,16 @@ def test_two_hidden_effects_are_found_as_a_pair() -> None:
     judged += [Judged(n, f.log_evidence - null, adequacy(f, search.landings).p) for n, (_, f) in pairs.items()]
     found = judge(judged, len(EFFECTS))
     assert (found.verdict, set(found.names)) == ("effects", {"drag", "bias"})
+
+
+def test_the_base_fit_does_not_depend_on_the_number_of_workers() -> None:
+    landings = ringing_landing({**HIDDEN, "drag": 0.05}, seed=1)
+    found = []
+    for workers in (1, 2):
+        crew = Crew(ringing, workers)
+        found.append(content(Search(landings, NUISANCES, (), crew).base()))
+        crew.close()
+    assert found[0] == found[1]
 
 
 class Trap(Formula):
