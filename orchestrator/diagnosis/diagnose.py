@@ -161,6 +161,9 @@ def _look_outside(request: Request, diagnosis: Diagnosis, crew: Crew, told: Told
     if found is None:
         return
     closure = None
+    if not found.adequate:
+        diagnosis.outcome.warnings.append(f"nearest of the generic terms: {found.words}; it leaves more than noise, and is not put forward")
+        return
     if held is not None:
         fits, gains = ask_holdouts(state, held, crew, request.seed, [found.name], told)
         diagnosis.holdout_fits = {**diagnosis.holdout_fits, **fits}

@@ -124,7 +124,7 @@ class Search:
             for own in [np.zeros(len(h.coordinates)), *map(np.array, h.scaled_starts())]
         ]
         for place in range(launch, len(self.path) - 1):
-            runners = self._ran(runners, self.path[place], steps=3)
+            runners = self._ran(runners, self.path[place], steps=8)
         last = [(h, z) for h, z in runners] + [(h, np.concatenate([base.z, z[len(base.z) :]])) for h, z in runners[:FINALISTS]]
         tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), here, z, 6, self.fresh) for h, z in last]
         best = self._best_of([h.name for h, _ in last], self._run("hypotheses", tasks))
@@ -136,7 +136,7 @@ class Search:
 
     def _ran(self, runners: list[tuple[Hypothesis, Array]], point: Point, steps: int) -> list[tuple[Hypothesis, Array]]:
         """Who is still in the race after one horizon, best first, one or two starts of each."""
-        tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), point, z, steps) for h, z in runners]
+        tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), point, z, steps, self.fresh) for h, z in runners]
         fits = self._run(f"hypotheses to {point.horizon:g} s", tasks)
         ended = sorted(((fit.objective, i) for i, fit in enumerate(fits) if fit is not None), key=lambda pair: pair[0])
         kept: list[tuple[Hypothesis, Array]] = []
