@@ -10,6 +10,8 @@ from __future__ import annotations
 import gc
 import hashlib
 import io
+import multiprocessing
+import os
 import pickle
 import signal
 import threading
@@ -197,7 +199,16 @@ _lander: Lander | None = None
 def _begin(make: Callable[[], Lander]) -> None:
     global _lander
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_leave_with_parent, daemon=True).start()
     _lander = make()
+
+
+def _leave_with_parent() -> None:
+    """A worker whose parent was killed would wait for work for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _work(task: Task[Any]) -> tuple[int, Any]:
