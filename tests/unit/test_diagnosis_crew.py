@@ -117,7 +117,11 @@ def test_an_interrupt_waits_until_a_landing_is_over() -> None:
             signal.raise_signal(signal.SIGINT)
             ended.append(True)
 
-    with pytest.raises(KeyboardInterrupt):
-        landing()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            landing()
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert ended
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
