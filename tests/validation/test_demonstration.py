@@ -8,7 +8,7 @@ import pytest
 from conftest import orchestrator
 from hidden_landings import Case, Vehicle, write
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 
 CASES = {

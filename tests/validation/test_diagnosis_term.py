@@ -70,7 +70,7 @@ def landed(setup: Setup, measured: Measured) -> Measured:
     return replace(measured, series=series, values=values)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.xfail(
     strict=False,
     reason="from a base fit in a false minimum a torque on the body was found; since terms climb: no result in 330 s on a loaded machine",

@@ -41,7 +41,7 @@ def test_strokes_are_those_of_table_6(name: str, column: str) -> None:
     assert given == pytest.approx(printed, abs=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_photographed_strokes_force_no_name(tmp_path: Path) -> None:
     """-Z left is 11.43 cm in the photographs and about 0 in every simulation: whatever the library offers must not be named for it."""
     found = diagnose(Request(find_scenario("apollo11_zupp"), [MEASURED / "apollo11_photographs"], out=tmp_path, workers=1)).outcome
