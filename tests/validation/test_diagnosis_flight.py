@@ -175,7 +175,7 @@ def test_the_twin_lands_as_the_units_do_with_an_effect(
         names = simulation.addresses.twin(address)
         assert names is not None
         own |= dict(zip(names, np.resize(numbers, len(names)).tolist(), strict=True))
-    grid = np.linspace(0.0, STOP, 241) if effect.kind == "sensor" else watched.grid(STOP)
+    grid = np.linspace(0.0, STOP, 241) if effect.kind == "sensor" else watched.grid(STOP, {})
     course = twin.land(own, grid, watched.columns, watched.final)
     base = twin.land({}, grid, watched.columns, watched.final)
     twin.close()
@@ -187,7 +187,7 @@ def test_the_twin_lands_as_the_units_do_with_an_effect(
 
 def test_the_master_lands_for_a_search_as_the_twin_does(zupp: CoSimulation) -> None:
     watched = observation()
-    grid = watched.grid(STOP)
+    grid = watched.grid(STOP, {})
     effect = EFFECTS["ground_effect"]
     assert effect.insert is not None
     lander = MasterLanderMaker(SCENARIOS / "apollo11_zupp.toml", (effect.insert,))()
