@@ -1,6 +1,7 @@
 """Effects of the struts beyond the paper: rate hardening, the generic strut term, an offset centre of mass; null values bit for bit."""
 
 from math import tanh
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ from lander.laws.leg_dynamics import leg_motion, tangents
 from lander.laws.leg_inertia import Base
 from lander.laws.leg_joints import joint_damping
 from lander.laws.vectors import ZERO, dot
-from lander.shell.reference import FOLDER, reference_text
+from lander.shell.reference import reference_text
 from lander.units.gear_leg import EFFECTS, GearLeg
 from lander.units.lunar_lander import LunarLander
+
+FOLDER = Path(__file__).parents[2] / "fmus" / "reference"
 
 VIRGIN = Crush(1e-3, 1e-3, 1e-3, 1e-3, 1e-3)
 CORE = core((20017.0, 42358.0), 0.254, 0.812, 1e-3, 1.0)

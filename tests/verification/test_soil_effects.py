@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import exp, tanh
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,10 +15,12 @@ from lander.laws.soil_stepping import InterfaceModel, PadStart, Shift, step_soil
 from lander.laws.surface import inclined_plane
 from lander.laws.tangent_term import AGAINST_SLIDE, AGAINST_SLIP, TangentTerm
 from lander.laws.vectors import ZERO, Vector, identity
-from lander.shell.reference import FOLDER, reference_text
+from lander.shell.reference import reference_text
 from lander.units.lunar_lander import LunarLander
 from lander.units.regolith_contact import EFFECTS, RegolithContact
 from scipy.spatial.transform import Rotation
+
+FOLDER = Path(__file__).parents[2] / "fmus" / "reference"
 
 BASE = Soil(PUBLISHED, 30000.0, 1.5, 3000.0, 0.1, 1e-4, 1e-4, 0.36, 290.8, 1e-3)
 LEVEL, SLOPE = inclined_plane(0.0, 0.0), inclined_plane(0.08, -0.2)
