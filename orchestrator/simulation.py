@@ -19,7 +19,7 @@ from orchestrator.master.start import solve_start
 from orchestrator.master.system import System
 from orchestrator.master.trust import distrust
 from orchestrator.scenario.model import StartTable
-from orchestrator.scenario.parameters import SETTABLE
+from orchestrator.scenario.parameters import SETTABLE, numbers
 
 Progress = Callable[[float], None]
 START_TRIES = 4
@@ -182,7 +182,14 @@ class Simulation:
             unit_messages=[f"{slave.name}: {text}" for slave in self.system.slaves for text in slave.messages],
             paper=table.paper,
             results=table.results,
+            parameters=self._parameters(),
         )
+
+    def _parameters(self) -> dict[str, float]:
+        known: dict[str, float] = {}
+        for (name, interface), given in zip(self.blueprint.interfaces.items(), self.blueprint.values, strict=True):
+            known |= numbers(name, interface, given)
+        return known
 
     def _unit_record(self, place: int) -> UnitRecord:
         slave, master = self.system.slaves[place], self.master

@@ -163,3 +163,5 @@ class RunResult:
     """The scenario's [paper] table, unchanged."""
     results: dict[str, Any] = field(default_factory=dict)
     """The scenario's [results] table, unchanged."""
+    parameters: dict[str, float] = field(default_factory=dict)
+    """"unit.parameter" -> number it ran with, those left at the unit's own start value among them."""

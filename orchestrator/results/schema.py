@@ -1,7 +1,7 @@
 """The `[results]` table of a scenario: what a run is to be summed up as, and beside which published numbers."""
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -17,6 +17,16 @@ class LegChannels(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
     leg: str
     soil: str
+
+
+class LowestRing(BaseModel):
+    """The lowest thing of the body that must stay clear of the ground, a ring about its axis: the nozzle's exit. Lengths in m."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    height_above_pads: float
+    """Above the bases of the undeformed footpads."""
+    radius: Annotated[float, Field(ge=0.0)]
+    source: str = ""
 
 
 class ReportEntry(BaseModel):
@@ -41,6 +51,7 @@ class ResultsTable(BaseModel):
     compare: str | None = None
     measured: str | None = None
     work: list[str] | None = None
+    lowest: LowestRing | None = None
     report: dict[str, ReportEntry] = Field(default_factory=dict)
     clock_offsets: dict[str, float] = Field(default_factory=dict)
     """Series of measured data -> s that a diagnosis found its clock ahead; nothing simulated moves by it."""
@@ -63,7 +74,7 @@ def read(table: Mapping[str, Any], where: str = "results") -> ResultsTable:
 def _one_line(place: tuple[int | str, ...], kind: str, message: str, where: str) -> str:
     name = ".".join([where, *(str(part) for part in place)])
     if kind == "extra_forbidden":
-        tables: dict[str, type[BaseModel]] = {"legs": LegChannels, "report": ReportEntry}
+        tables: dict[str, type[BaseModel]] = {"legs": LegChannels, "report": ReportEntry, "lowest": LowestRing}
         owner = tables.get(str(place[0]), ResultsTable) if len(place) > 1 else ResultsTable
         return f"{name}: unknown key; {nearest(str(place[-1]), owner.model_fields)}"
     if kind == "missing":

@@ -7,6 +7,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from orchestrator.results.margins import margins
+
 Summary = Mapping[str, Any]
 NONE = "–"
 
@@ -19,6 +21,8 @@ def terminal_table(summary: Summary) -> RenderableType:
     if summary["report"]:
         parts.append(_report(summary["report"]))
     parts.append(_facts(summary))
+    if summary.get("failure"):
+        parts.append(margins(summary["failure"]))
     if struts := [leg for leg, bottomed in summary.get("bottomed", {}).items() if bottomed]:
         parts.append(Text("a strut reached its stroke limit: " + ", ".join(struts), style="red"))
     parts += [Text(line, style="yellow") for line in summary["notes"]]

@@ -13,6 +13,7 @@ from orchestrator.master.result import RunResult
 from orchestrator.results import comparison, cost, history, plot_landing, plot_run, plot_style, provenance, references
 from orchestrator.results.channels import Array, Channels
 from orchestrator.results.energy import EnergyAccount, account_of
+from orchestrator.results.failure import failure
 from orchestrator.results.generic import generic, report
 from orchestrator.results.schema import ResultsTable, read
 from orchestrator.results.touchdown import touchdown
@@ -57,6 +58,8 @@ def summarise(
     }
     landing = table.resolved_kind == "touchdown"
     summary |= touchdown(channels, table) if landing else generic(channels, result.units)
+    if landing:
+        summary["failure"] = failure(channels, table, result.parameters)
     summary["energy"] = None if account is None else account.summary()
     summary["ledger"] = cost.ledger(result.ledger, None if account is None else account.initial)
     summary["master"] = cost.master(result)

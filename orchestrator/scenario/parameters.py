@@ -26,6 +26,16 @@ def start_values(unit: str, interface: Interface, parameters: Mapping[str, Any])
     return values
 
 
+def numbers(unit: str, interface: Interface, given: Mapping[str, Value]) -> dict[str, float]:
+    """`unit.parameter` -> the number it runs with: as given, else the unit's own start value. Text is left out."""
+    known: dict[str, float] = {}
+    for variable in interface.of("parameter"):
+        value = given.get(variable.name, variable.start)
+        if variable.kind is not Kind.STRING and value is not None:
+            known[f"{unit}.{variable.name}"] = float(value == "true") if value in ("true", "false") else float(value)
+    return known
+
+
 def settable_stems(interface: Interface) -> list[str]:
     return [name for name, elements in interface.vectors.items() if elements[0].causality in SETTABLE]
 
