@@ -17,12 +17,12 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from orchestrator.diagnosis.landing import Lander
+from orchestrator.interruption import unbroken, unheard
 
 Result = TypeVar("Result")
 Given = TypeVar("Given", covariant=True)
@@ -161,36 +161,6 @@ def passed_on(thing: Result) -> Result:
     """The thing as another process would get it."""
     copy: Result = pickle.loads(pickle.dumps(thing, protocol=5))
     return copy
-
-
-@contextmanager
-def unbroken() -> Iterator[None]:
-    """Ctrl-C waits: raised inside a unit, it would be that unit's error, and the landing one that cannot be flown."""
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if came:
-        raise KeyboardInterrupt
-
-
-@contextmanager
-def unheard() -> Iterator[None]:
-    """Processes begun here never hear of Ctrl-C; who began them ends them."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _lander: Lander | None = None

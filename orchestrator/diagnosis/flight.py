@@ -18,12 +18,11 @@ from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.places import PLACES
 from orchestrator.diagnosis.recorded import cosimulation_column
 from orchestrator.errors import OrchestratorError, UnitError
-from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.loaded_units import LoadedUnits
 from orchestrator.master.result import RunResult
-from orchestrator.master.slave import Interface, Kind, Value
+from orchestrator.master.slave import Kind, Value
 from orchestrator.scenario.parameters import checked
 from orchestrator.scenario.read import Tree, merge
-from orchestrator.simulation import Simulation
 
 TELEMETRY = tuple(name.replace("rates", "telemetry") for name in RATES)
 PEAK = "peak."
@@ -37,41 +36,6 @@ class Flight:
     course: Course | None
     reason: str = ""
     result: RunResult | None = None
-
-
-class LoadedUnits:
-    """FMUs instantiated once and set up again for every run: loading costs more than a short landing."""
-
-    def __init__(self) -> None:
-        self._units: dict[str, tuple[Interface, Fmi2Unit]] = {}
-
-    def run(self, blueprint: Blueprint) -> RunResult:
-        """As a scenario's run from fresh instances, to the bit."""
-        try:
-            result = Simulation(blueprint, [self._loaded(name, it) for name, it in blueprint.interfaces.items()]).run()
-        except BaseException:
-            self.close()  # a unit that failed is not used again
-            raise
-        if not result.complete:
-            self.close()
-        return result
-
-    def close(self) -> None:
-        for _, unit in self._units.values():
-            unit.close()
-        self._units.clear()
-
-    def _loaded(self, name: str, interface: Interface) -> Fmi2Unit:
-        known = self._units.get(name)
-        if known is not None and known[0].sha256 == interface.sha256:
-            return known[1]
-        if known is not None:
-            known[1].close()
-        if interface.path is None:
-            raise ValueError(f"{name} is not an FMU")
-        unit = Fmi2Unit(name, interface.path, interface)
-        self._units[name] = (interface, unit)
-        return unit
 
 
 class CoSimulation:

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses, Slot
 from orchestrator.diagnosis.effects.effect import Insert
-from orchestrator.diagnosis.flight import LoadedUnits, course_of, needed_columns, with_values
+from orchestrator.diagnosis.flight import course_of, needed_columns, with_values
 from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.errors import OrchestratorError, UnitError
+from orchestrator.loaded_units import LoadedUnits
 from orchestrator.master.slave import Kind
 from orchestrator.scenario.read import Tree, merge
 from orchestrator.scenario.record import matching_outputs

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,20 @@ _SI = ("kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset")
 
 
 def read_interface(path: Path) -> Interface:
-    """What the FMU says of itself, or a UnitError that names the file."""
+    """What the FMU says of itself, or a UnitError that names the file. Read once as long as the file stays what it is."""
+    try:
+        now = path.stat()
+    except OSError:
+        return _read_interface(path)
+    return _read_again(path, now.st_mtime_ns, now.st_size)
+
+
+@lru_cache(maxsize=64)
+def _read_again(path: Path, changed: int, size: int) -> Interface:
+    return _read_interface(path)
+
+
+def _read_interface(path: Path) -> Interface:
     try:
         description: Any = read_model_description(str(path))
     except Exception as error:

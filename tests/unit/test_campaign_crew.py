@@ -1,0 +1,59 @@
+"""Workers that fly landings: the same landing whoever flies it, and none lost when one dies or one landing fails."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from fmi_samples import oscillator
+
+from orchestrator.campaign.crew import Crew
+from orchestrator.campaign.landing import Base, land
+from orchestrator.errors import UserError
+from orchestrator.simulation import run_scenario
+
+
+def test_a_landing_by_kept_units_is_that_of_fresh_ones_to_the_last_bit(tmp_path: Path) -> None:
+    path = oscillator(tmp_path)
+    base = Base.read(path)
+    for mass in (3.5, 0.7, 3.5):
+        override = f"a.mass={mass!r}"
+        fresh = run_scenario(path, [override])
+        kept = land(base, [override])
+        assert kept.outcome == "finished"
+        for name, column in fresh.columns.items():
+            assert kept.outputs[f"columns.{name}.final"] == column[-1]
+            assert kept.outputs[f"columns.{name}.max"] == column.max()
+
+
+def test_a_landing_that_cannot_be_flown_says_why_and_the_next_is_flown(tmp_path: Path) -> None:
+    base = Base.read(oscillator(tmp_path))
+    for override in ("a.mass=nan", "a.mas=1", "c.mass=1"):
+        failed = land(base, [override])
+        assert (failed.outcome, failed.trusted, failed.outputs) == ("not flown", False, {})
+        assert override.partition("=")[0] in failed.error
+        assert "\n" not in failed.error
+    assert land(base, ["a.mass=2.0"]).trusted
+
+
+def test_a_worker_killed_in_mid_campaign_costs_no_landing_and_doubles_none(tmp_path: Path) -> None:
+    base = Base.read(oscillator(tmp_path))
+    asked = {f"landing {i}": [f"a.mass={1.0 + 0.1 * i!r}"] for i in range(40)}
+    alone = {name: land(base, overrides) for name, overrides in asked.items()}
+    seen, workers = [], set()
+    with Crew(workers=2) as crew:
+        for name, landing in crew.fly(base, asked.items()):
+            seen.append(name)
+            workers.add(landing.worker)
+            assert landing.outputs == alone[name].outputs
+            if len(seen) == 10:
+                os.kill(landing.worker, signal.SIGKILL)
+    assert sorted(seen) == sorted(asked)
+    assert len(workers) >= 2
+
+
+def test_a_scheduler_that_is_not_there_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("orchestrator.campaign.crew.ANSWERS_WITHIN", 1.0)
+    nowhere = "tcp://127.0.0.1:9"
+    with pytest.raises(UserError, match=f"^--scheduler {nowhere}: no scheduler with a worker answers within 1 s"), Crew(scheduler=nowhere):
+        pass
