@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from orchestrator.blueprint import Blueprint
-from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.fmi.load import load
+from orchestrator.fmi.unit import FmuUnit
 from orchestrator.master.result import RunResult
 from orchestrator.master.slave import Interface
 from orchestrator.simulation import Simulation
@@ -15,7 +16,7 @@ class LoadedUnits:
     """FMUs instantiated once and set up again for every run: loading costs more than a short landing."""
 
     def __init__(self) -> None:
-        self._units: dict[str, tuple[Interface, Fmi2Unit]] = {}
+        self._units: dict[str, tuple[Interface, FmuUnit]] = {}
 
     def run(self, blueprint: Blueprint, on_hang: Callable[[RunResult], None] | None = None) -> RunResult:
         """As a scenario's run from fresh instances, to the bit. on_hang: as in Simulation."""
@@ -35,14 +36,12 @@ class LoadedUnits:
             unit.close()
         self._units.clear()
 
-    def _loaded(self, name: str, interface: Interface) -> Fmi2Unit:
+    def _loaded(self, name: str, interface: Interface) -> FmuUnit:
         known = self._units.get(name)
         if known is not None and known[0].sha256 == interface.sha256:
             return known[1]
         if known is not None:
             known[1].close()
-        if interface.path is None:
-            raise ValueError(f"{name} is not an FMU")
-        unit = Fmi2Unit(name, interface.path, interface)
+        unit = load(name, interface)
         self._units[name] = (interface, unit)
         return unit

@@ -10,11 +10,11 @@ from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.checkpoint.schedule import Schedule
 from orchestrator.checkpoint.snapshot import Snapshot, put
 from orchestrator.errors import OrchestratorError, RunError, TrustError, UnitError, nearest
-from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.fmi.load import load
 from orchestrator.master.master import Master
 from orchestrator.master.result import RunResult, UnitRecord
 from orchestrator.master.settings import MasterSettings
-from orchestrator.master.slave import Interface, Kind, Slave, Value
+from orchestrator.master.slave import Kind, Slave, Value
 from orchestrator.master.start import solve_start
 from orchestrator.master.system import System
 from orchestrator.master.trust import distrust
@@ -33,7 +33,7 @@ class Simulation:
         self.blueprint = blueprint
         table = blueprint.scenario.table
         if slaves is None:
-            slaves = [Fmi2Unit(name, _path(i), i) for name, i in blueprint.interfaces.items()]
+            slaves = [load(name, interface) for name, interface in blueprint.interfaces.items()]
         once = frozenset(unit.name for unit in blueprint.scenario.units if unit.once)
         self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero, blueprint.located)
         settings = MasterSettings(**table.master.model_dump(exclude={"order", "locate"}), record_interval=table.record.interval)
@@ -228,12 +228,6 @@ def run_scenario(path: Path, overrides: Sequence[str] = (), changes: dict[str, A
         return simulation.run()
     finally:
         simulation.close()
-
-
-def _path(interface: Interface) -> Path:
-    if interface.path is None:
-        raise UnitError(f"{interface.model_name}: is not an FMU; give a unit that runs it")
-    return interface.path
 
 
 __all__ = ["Blueprint", "Simulation", "draw_up", "fault", "read_scenario", "run_scenario"]

@@ -21,11 +21,7 @@ _LOGS: WeakValueDictionary[bytes, MessageLog] = WeakValueDictionary()
 
 
 class MessageLog:
-    """Callbacks for one instance; the last `_KEPT` messages.
-
-    fmpy's logger proxy has one target for the whole process, the callback registered last: a message is handed on by the
-    instance's name it carries.
-    """
+    """The last `_KEPT` messages of one instance."""
 
     def __init__(self, unit: str) -> None:
         self.unit = unit
@@ -34,15 +30,6 @@ class MessageLog:
         self.complaint = ""
         """The last message with status error since `forget`."""
         _LOGS[unit.encode()] = self
-        self.callbacks: Any = fmi2CallbackFunctions()
-        self.callbacks.logger = fmi2CallbackLoggerTYPE(self._keep)
-        self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        self.callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        # C loggers are variadic; the proxy formats the message before Python sees it.
-        addLoggerProxy(ctypes.byref(self.callbacks))
-
-    def _keep(self, _environment: Any, name: bytes, status: int, _category: bytes, message: bytes) -> None:
-        _LOGS.get(name, self).take(status, message)
 
     def take(self, status: int, message: bytes) -> None:
         """One message of this instance."""
@@ -62,3 +49,22 @@ class MessageLog:
     def last(self) -> str:
         """The last thing worth telling: a warning or worse if there was one."""
         return self._worst or (self.messages[-1] if self.messages else "")
+
+
+def fmi2_callbacks(log: MessageLog) -> Any:
+    """For one instance of FMI 2.0.
+
+    fmpy's logger proxy has one target for the whole process, the callback registered last: a message is handed on by the
+    instance's name it carries.
+    """
+
+    def keep(_environment: Any, name: bytes, status: int, _category: bytes, message: bytes) -> None:
+        _LOGS.get(name, log).take(status, message)
+
+    callbacks: Any = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(keep)
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    # C loggers are variadic; the proxy formats the message before Python sees it.
+    addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks

@@ -23,6 +23,9 @@ class Kind(StrEnum):
     INTEGER = "Integer"
     BOOLEAN = "Boolean"
     STRING = "String"
+    BINARY = "Binary"
+    """Bytes and clocks of FMI 3.0: seen, neither set nor connected nor recorded."""
+    CLOCK = "Clock"
 
 
 class Status(IntEnum):
@@ -49,6 +52,14 @@ class Variable:
     nominal: float = 1.0
     description: str = ""
     reference: int = 0
+    type: str = "Real"
+    """As the FMU's version of FMI calls it: "Real", "Float32", "Enumeration" ..."""
+    element: int = 0
+    """An array of FMI 3.0 appears as its elements name[1], name[2] ... by rows; this one's place in it, from 0."""
+    size: int = 1
+    """How many elements the array has."""
+    items: Mapping[str, int] = field(default_factory=dict)
+    """Of an enumeration: name -> value."""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 
 from orchestrator.errors import UnitError, nearest
 from orchestrator.master.slave import Interface, Kind, Value, Variable
+from orchestrator.scenario.record import NUMBERS
 
 SETTABLE = ("parameter", "structuralParameter", "input")
 _EXPECTED = {Kind.REAL: "a number", Kind.INTEGER: "a whole number", Kind.BOOLEAN: "true or false", Kind.STRING: "a string"}
@@ -27,11 +28,11 @@ def start_values(unit: str, interface: Interface, parameters: Mapping[str, Any])
 
 
 def numbers(unit: str, interface: Interface, given: Mapping[str, Value]) -> dict[str, float]:
-    """`unit.parameter` -> the number it runs with: as given, else the unit's own start value. Text is left out."""
+    """`unit.parameter` -> the number it runs with: as given, else the unit's own start value. Text and bytes are left out."""
     known: dict[str, float] = {}
     for variable in interface.of("parameter"):
         value = given.get(variable.name, variable.start)
-        if variable.kind is not Kind.STRING and value is not None:
+        if variable.kind in NUMBERS and value is not None:
             known[f"{unit}.{variable.name}"] = float(value == "true") if value in ("true", "false") else float(value)
     return known
 
@@ -43,6 +44,14 @@ def settable_stems(interface: Interface) -> list[str]:
 def checked(unit: str, variable: Variable, value: Any) -> Value:
     """The value, if the variable can hold it."""
     what = f"{unit}.{variable.name} = {value!r}"
+    if variable.kind not in _EXPECTED:
+        raise UnitError(f"{what}: is of type {variable.kind}, which this master does not set; leave it out")
+    if variable.items and isinstance(value, str):
+        if value not in variable.items:
+            raise UnitError(f"{what}: is none of its values; {nearest(value, variable.items)}")
+        value = variable.items[value]
+    if variable.causality == "structuralParameter" and str(value) != variable.start:
+        raise UnitError(f"{what}: a structural parameter stays at its start value {variable.start}; leave it out")
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     fits = {
         Kind.REAL: number,
