@@ -35,10 +35,11 @@ class Blueprint:
     """Outputs whose changes are located, per unit."""
 
 
-def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None) -> Scenario:
-    """The scenario said out in full; `changes` are merged over the file (e.g. {"stop_time": 2.0})."""
-    tree = merge(read_table(path), changes or {})
-    return expand(check_table(tree, path.name), path.name, overrides)
+def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None, variant: str = "") -> Scenario:
+    """The scenario said out in full; `changes` are merged over the file (e.g. {"stop_time": 2.0}); `variant` of an .ssp."""
+    tree = merge(read_table(path, variant), changes or {})
+    where = f"{path.name}#{variant}" if variant else path.name
+    return expand(check_table(tree, where), where, overrides)
 
 
 def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:

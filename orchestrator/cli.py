@@ -1,4 +1,4 @@
-"""The command line: `orchestrator run`, `resume`, `show`, `list`, `diagnose`, `distinguish`. Exit codes stand in orchestrator.errors."""
+"""The command line: `orchestrator run`, `resume`, `show`, `list`, `diagnose` and more. Exit codes stand in orchestrator.errors."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
+from orchestrator.ssp.command import export
 
 if TYPE_CHECKING:
     from orchestrator.master.result import RunResult
@@ -25,8 +26,9 @@ if TYPE_CHECKING:
 ABOUT = "Steps the FMUs of a lunar lander's touchdown together and writes up what came of it."
 app = typer.Typer(add_completion=False, no_args_is_help=True, help=ABOUT)
 
-ScenarioName = Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")]
+ScenarioName = Annotated[str, typer.Argument(help="A scenario file, the bare name of one in scenarios/, or an .ssp.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated; the unit may be a glob.")]
+Variant = Annotated[str, typer.Option("--variant", help="Which system of an .ssp that holds several.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no table.")]
 
 
@@ -38,6 +40,7 @@ def run(
     stop_time: Annotated[float | None, typer.Option(help="s; instead of the scenario's.")] = None,
     tolerance: Annotated[float | None, typer.Option(help="m; error allowed per step, instead of the scenario's.")] = None,
     checkpoint_every: Annotated[float | None, typer.Option(help="s simulated between checkpoints, from which `resume` goes on.")] = None,
+    variant: Variant = "",
     quiet: Quiet = False,
 ) -> None:
     """Run a scenario and write its results."""
@@ -51,9 +54,9 @@ def run(
     changes: dict[str, Any] = {} if stop_time is None else {"stop_time": stop_time}
     if tolerance is not None:
         changes["master"] = {"tolerance": tolerance}
-    folder = out or Path("results") / path.stem
+    folder = out or Path("results") / (f"{path.stem}-{variant}" if variant else path.stem)
     schedule = None if checkpoint_every is None else Schedule.asked(folder, checkpoint_every)
-    simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes), path))
+    simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes, variant), path))
     if schedule is None:
         clear(folder / FOLDER)
     simulation.on_hang = _leaving(folder, quiet)
@@ -118,19 +121,20 @@ def _leaving(folder: Path, quiet: bool) -> Callable[[RunResult], None]:
 
 
 @app.command()
-def show(scenario: ScenarioName, overrides: Overrides = None) -> None:
+def show(scenario: ScenarioName, overrides: Overrides = None, variant: Variant = "") -> None:
     """Show units, ports, connections and parameters without running anything."""
     from orchestrator.blueprint import draw_up, read_scenario
     from orchestrator.scenario.show import overview
 
     path = find_scenario(scenario)
     console = Console()
-    for part in overview(draw_up(read_scenario(path, overrides or ()), path)):
+    for part in overview(draw_up(read_scenario(path, overrides or (), variant=variant), path)):
         console.print(part)
 
 
 app.command()(diagnose)
 app.command()(distinguish)
+app.command()(export)
 
 
 @app.command("list")

@@ -6,6 +6,7 @@
     │   ├── UnitError                      a unit: missing or broken FMU, unknown parameter, value outside its range
     │   ├── WiringError                    a connection: unknown port, wrong unit of measure, an input fed twice
     │   ├── MeasuredError                  a folder of measured data: missing file or column, wrong unit, no number
+    │   ├── SspError                       an .ssp: broken, not valid, or with something this reader does not know
     │   ├── AddressError                   a parameter or channel that the scenario does not have
     │   └── EffectError                    an effect's file: unknown key, no parameter, a start beyond its limits
     └── RunError           exit code 3   the run started and cannot be trusted or finished
@@ -49,6 +50,10 @@ class WiringError(UserError):
 
 class MeasuredError(UserError):
     """A folder of measured data is at fault."""
+
+
+class SspError(UserError):
+    """An .ssp is at fault."""
 
 
 class AddressError(UserError):

@@ -43,9 +43,17 @@ class Simulation:
 
     def run(self, on_step: Progress | None = None, schedule: Schedule | None = None) -> RunResult:
         """Initialise, step to the end, collect. A unit that fails while stepping ends the run with what there is so far."""
-        table = self.blueprint.scenario.table
         if schedule is not None:
             schedule.check(self.master)
+        self.initialise()
+        self.master.prepare()
+        if schedule is not None:
+            schedule.begin(self.master, self.blueprint, fresh=True)
+        return self._go(on_step, schedule)
+
+    def initialise(self) -> None:
+        """To the start: outputs consistent round the system, the start condition solved."""
+        table = self.blueprint.scenario.table
         try:
             if table.start is None:
                 self._initialise(self.blueprint.values)
@@ -55,10 +63,6 @@ class Simulation:
             self._refuse_complaints()  # the cause of a start that cannot be solved, if a unit named one
             raise
         self._refuse_complaints()
-        self.master.prepare()
-        if schedule is not None:
-            schedule.begin(self.master, self.blueprint, fresh=True)
-        return self._go(on_step, schedule)
 
     def resume(self, snapshot: Snapshot, on_step: Progress | None = None, schedule: Schedule | None = None) -> RunResult:
         """Go on from a checkpoint of this blueprint, to the same result."""

@@ -48,10 +48,13 @@ def initialise(plan: Plan, jobs: Sequence[Job], start: float, stop: float, value
 def solve_start(residual: Callable[[float], float], guess: float, nominal: float, what: str) -> float:
     """The value at which the residual is zero, by secants.
 
-    `what` names the request for the message. Converged at 1e-12 of the residual's scale or when the value stops moving.
+    `what` names the request for the message. Converged at 1e-12 of the residual's scale or when the value stops moving. A guess that is
+    converged already stays as it is: solved once and written down, it gives the same bits again.
     """
     x0, x1 = guess, guess + 1e-2 * max(abs(guess), nominal)
     f0 = residual(x0)
+    if abs(f0) <= 1e-12 * abs(x1 - x0):
+        return x0
     f1 = residual(x1)
     scale = max(abs(f0), abs(f1), abs(x1 - x0))
     for _ in range(40):

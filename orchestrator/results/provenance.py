@@ -6,6 +6,7 @@ import re
 import subprocess
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from hashlib import sha256
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -37,6 +38,7 @@ def write_inputs(result: RunResult, path: Path) -> Path:
     inputs = {
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "scenario": result.scenario_path.name if result.scenario_path else None,
+        "scenario_sha256": sha256(result.scenario_path.read_bytes()).hexdigest() if result.scenario_path else None,
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
         "packages": package_versions(),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from orchestrator.errors import ScenarioError, UnitError, nearest
-from orchestrator.scenario.read import is_path
+from orchestrator.scenario.read import SSP, is_path
 
 
 def scenario_folder() -> Path | None:
@@ -29,7 +29,7 @@ def find_scenario(text: str) -> Path:
     path = Path(text)
     if path.is_file():
         return path
-    if is_path(text) or text.endswith(".toml"):
+    if is_path(text) or path.suffix in (".toml", SSP):
         raise ScenarioError(f"{text}: no such file; `orchestrator list` shows the scenarios there are")
     found = [p for p in all_scenarios() if p.stem == text]
     if found:

@@ -14,10 +14,15 @@ from orchestrator.scenario.faults import first_fault
 from orchestrator.scenario.model import ScenarioTable, known_keys
 
 Tree = dict[str, Any]
+SSP = ".ssp"
 
 
-def read_table(path: Path) -> Tree:
-    """The scenario as a plain tree: overlays merged, paths made absolute, nothing checked yet."""
+def read_table(path: Path, variant: str = "") -> Tree:
+    """The scenario as a plain tree: overlays merged, paths made absolute, nothing checked yet. `variant` picks a system of an .ssp."""
+    if path.suffix == SSP:
+        return _read_ssp(path, variant)
+    if variant:
+        raise ScenarioError(f"--variant {variant}: {path.name} is a scenario file, variants are in an .ssp; leave it out")
     return _read(path, ())
 
 
@@ -65,7 +70,16 @@ def _read(path: Path, above: tuple[Path, ...]) -> Tree:
         return tree
     if not isinstance(extended, str):
         raise ScenarioError(f"{path}: extends = {extended!r}: expects the name of one TOML file")
+    file, mark, variant = extended.partition(f"{SSP}#")
+    if mark or extended.endswith(SSP):
+        return merge(_read_ssp(path.parent / (file + SSP if mark else extended), variant), tree)
     return merge(_read(path.parent / extended, (*above, path.resolve())), tree)
+
+
+def _read_ssp(path: Path, variant: str) -> Tree:
+    from orchestrator.ssp.scenario import read_system  # brings lxml and FMPy, and most scenarios are not one
+
+    return read_system(path, variant)
 
 
 def _anchor_paths(tree: Tree, folder: Path) -> None:

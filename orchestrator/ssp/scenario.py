@@ -1,0 +1,128 @@
+"""A system structure description as the tree of a scenario: what `orchestrator run` and `extends` take from an .ssp."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from orchestrator.errors import SspError
+from orchestrator.fmi.description import read_interface
+from orchestrator.master.slave import Interface, stem
+from orchestrator.ssp.archive import Archive, every, first, opened
+from orchestrator.ssp.joins import Joined, joins
+from orchestrator.ssp.names import OSP_ANNOTATION, SCENARIO_ANNOTATION, tag
+from orchestrator.ssp.structure import Structure, Wire, flattened
+from orchestrator.ssp.values import Given, start_values
+
+Tree = dict[str, Any]
+
+
+def read_system(path: Path, variant: str = "") -> Tree:
+    """The scenario an .ssp describes, nothing checked yet but the file itself.
+
+    Units, start values and connections are the standard's; the rest is our annotation's where there is one, else the scenario's defaults.
+    """
+    archive = opened(path, variant)
+    structure = flattened(archive)
+    own = _own_annotation(archive)
+    read: dict[Path, Interface] = {}
+    for component in structure.components.values():
+        read[component.fmu] = read.get(component.fmu) or read_interface(component.fmu)
+    interfaces = {path: read[component.fmu] for path, component in structure.components.items()}
+    wires = structure.wires()
+    fed = {wire.target for wire in wires}
+    values = {
+        path: {name: value for name, value in given.items() if (path, name) not in fed}     # the master finds those itself
+        for path, given in start_values(archive, structure, interfaces).items()
+    }  # fmt: skip
+    tree: Tree = {"title": archive.description.get("name", ""), **_times(archive), **own}
+    tree["units"] = _units(structure, values, own.get("units", {}))
+    tree["connections"] = _connections(archive, structure, interfaces, wires, own.get("connections"))
+    if not own:
+        tree["master"] = _steps(archive)
+    references = own.get("results", {}).get("references")
+    if references:
+        tree["results"] = own["results"] | {"references": str(archive.file(references, "results.references"))}
+    return tree
+
+
+def _own_annotation(archive: Archive) -> Tree:
+    for annotation in every(archive.description, "ssd:Annotations", "ssc:Annotation"):
+        if annotation.get("type") == SCENARIO_ANNOTATION:
+            try:
+                return tomllib.loads("".join(annotation.itertext()))
+            except tomllib.TOMLDecodeError as error:
+                raise SspError(f"{archive.where}: annotation {SCENARIO_ANNOTATION}: not valid TOML: {error}; correct it") from None
+    return {}
+
+
+def _times(archive: Archive) -> Tree:
+    experiment = first(archive.description, "ssd:DefaultExperiment")
+    stated = {} if experiment is None else {"start_time": experiment.get("startTime"), "stop_time": experiment.get("stopTime")}
+    return {key: float(text) for key, text in stated.items() if text is not None}
+
+
+def _steps(archive: Archive) -> Tree:
+    """The fixed step another tool left for its own master is taken as the longest interval."""
+    found = [
+        float(algorithm.get("baseStepSize"))
+        for annotation in every(archive.description, "ssd:DefaultExperiment", "ssd:Annotations", "ssc:Annotation")
+        if annotation.get("type") == OSP_ANNOTATION
+        for algorithm in annotation.iter(tag("osp:FixedStepAlgorithm"))
+    ]
+    return {} if not found else {"max_interval": found[0], "min_interval": min(found[0] / 100.0, 5e-5)}
+
+
+def _units(structure: Structure, values: Mapping[str, Mapping[str, Given]], own: Mapping[str, Any]) -> Tree:
+    """In the order of the document, which is that of stepping where the annotation gives none."""
+    return {
+        component.unit: {"fmu": str(component.fmu), "parameters": dict(values[path]), **own.get(component.unit, {})}
+        for path, component in structure.components.items()
+    }
+
+
+def _connections(
+    archive: Archive, structure: Structure, interfaces: Mapping[str, Interface], wires: list[Wire], own: list[Tree] | None
+) -> list[Tree]:
+    """Joined ports where all their links are there, and what is left, vectors in one line."""
+    units = {path: component.unit for path, component in structure.components.items()}
+    by_unit = {units[path]: interface for path, interface in interfaces.items()}
+    left = {(f"{units[w.source[0]]}.{w.source[1]}", f"{units[w.target[0]]}.{w.target[1]}"): w for w in wires}
+    plain = [ends for ends, wire in left.items() if (wire.factor, wire.offset, wire.as_is) == (1.0, 0.0, False)]
+    made: list[Joined] = joins(by_unit, plain, archive.where, own)
+    for joined in made:
+        for ends in joined.ends:
+            left.pop(ends, None)
+    return [joined.table for joined in made] + list(_by_variable(archive, left, by_unit))
+
+
+def _by_variable(archive: Archive, left: Mapping[tuple[str, str], Wire], interfaces: Mapping[str, Interface]) -> Iterator[Tree]:
+    done: set[tuple[str, str]] = set()
+    for ends, wire in left.items():
+        if ends in done:
+            continue
+        if (wire.factor, wire.offset, wire.as_is) != (1.0, 0.0, False):
+            label = f"{archive.where}: {ends[0]} -> {ends[1]}"
+            raise SspError(f"{label}: has a linear transformation, which this master does not do; put it in a unit")
+        vector = _whole_vector(ends, left, interfaces)
+        done.update(vector or [ends])
+        source, target = (_stem(end) for end in ends) if vector else ends
+        yield {"from": source, "to": target}
+
+
+def _whole_vector(
+    ends: tuple[str, str], left: Mapping[tuple[str, str], Wire], interfaces: Mapping[str, Interface]
+) -> list[tuple[str, str]]:
+    """All pairs of elements, where every element of one vector goes to the same of the other."""
+    (unit, _, source), (other, _, target) = (end.partition(".") for end in ends)
+    given, taken = (interfaces[u].vectors.get(stem(name), []) for u, name in ((unit, source), (other, target)))
+    pairs = [(f"{unit}.{one.name}", f"{other}.{two.name}") for one, two in zip(given, taken, strict=False)]
+    whole = len(given) == len(taken) > 1 and all(pair in left for pair in pairs) and ends in pairs
+    return pairs if whole else []
+
+
+def _stem(end: str) -> str:
+    unit, _, name = end.partition(".")
+    return f"{unit}.{stem(name)}"

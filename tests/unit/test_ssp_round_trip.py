@@ -1,0 +1,141 @@
+"""A scenario written as an .ssp and run again."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+from checkpoint_runs import orchestrator
+from fmi_samples import oscillator
+from lxml import etree
+from ssp_runs import columns, description, exported, packed, same_bits
+
+from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.errors import OrchestratorError
+from orchestrator.ssp.archive import parsed, schema_fault
+
+ROOT = Path(__file__).resolve().parents[2]
+APOLLO = ROOT / "scenarios" / "apollo11_zupp.toml"
+built = pytest.mark.skipif(not (ROOT / "build" / "fmus" / "GearLeg.fmu").exists(), reason="python build_fmus.py first")
+
+
+@built
+def test_a_landing_from_an_ssp_has_the_same_bits_and_the_same_report(tmp_path: Path) -> None:
+    ssp = exported(APOLLO, tmp_path / "apollo.ssp")
+    whole = columns(APOLLO, tmp_path / "toml", "--stop-time", 0.1)
+    assert max(whole["soil+Y.penetration"]) > 0.0             # a foot has touched
+    same_bits(whole, columns(ssp, tmp_path / "ssp", "--stop-time", 0.1))
+    assert (tmp_path / "ssp" / "comparison.md").read_text() == (tmp_path / "toml" / "comparison.md").read_text()
+    one, other = (tomllib.loads((tmp_path / folder / "scenario.toml").read_text()) for folder in ("toml", "ssp"))
+    assert [one[key] for key in ("connections", "master", "start", "record")] == [
+        other[key] for key in ("connections", "master", "start", "record")
+    ]
+    position = float(_given(ssp)["body", "position_start[1]"])
+    assert position == whole["body.body.position[1]"][0]      # solved in the file, for hosts that cannot
+    for i in (1, 2, 3, 4):                                    # a connected input starts at what feeds it
+        assert float(_given(ssp).get(("leg+Z", f"body.quaternion[{i}]"), 0.0)) == whole[f"body.body.quaternion[{i}]"][0]
+
+
+@built
+def test_a_changed_parameter_solves_the_start_condition_again(tmp_path: Path) -> None:
+    ssp, change = exported(APOLLO, tmp_path / "apollo.ssp"), ("--stop-time", 0.01, "--set", "body.pitch_start=0.05")
+    one, other = columns(APOLLO, tmp_path / "toml", *change), columns(ssp, tmp_path / "ssp", *change)
+    assert min(other[f"soil{leg}.gap"][0] for leg in ("+Z", "+Y", "-Z", "-Y")) == pytest.approx(0.0, abs=1e-9)   # m
+    assert other["body.body.position[1]"][0] == pytest.approx(one["body.body.position[1]"][0], abs=1e-9)         # m
+
+
+def _given(ssp: Path) -> dict[tuple[str, str], str]:
+    return {
+        (component.get("name"), parameter.get("name")): parameter[0].get("value")
+        for component in description(ssp).iter("{*}Component") for parameter in component.iter("{*}Parameter")
+    }  # fmt: skip
+
+
+def test_every_description_is_valid_by_the_standards_schema_and_a_mutilated_one_is_not(tmp_path: Path) -> None:
+    root = description(exported(oscillator(tmp_path), tmp_path / "system.ssp"))
+    assert schema_fault(root) == ""
+    root.remove(root[0])
+    assert "System" in schema_fault(root)
+
+
+def test_the_same_scenario_gives_the_same_file(tmp_path: Path) -> None:
+    scenario = oscillator(tmp_path)
+    one, other = (exported(scenario, tmp_path / name) for name in ("one.ssp", "other.ssp"))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_variant_stands_beside_the_default_and_runs_by_its_name(tmp_path: Path) -> None:
+    scenario, heavy = oscillator(tmp_path), tmp_path / "heavy.toml"
+    heavy.write_text("[units.b.parameters]\nmass = 9.0\n")
+    ssp = exported(scenario, tmp_path / "both.ssp", "--variant", f"heavy={heavy}")
+    assert schema_fault(description(ssp, "heavy.ssd")) == ""
+    (tmp_path / "over.toml").write_text('extends = "both.ssp#heavy.ssd"\n')
+    expected = columns(scenario, tmp_path / "1", "--set", "b.mass=9.0")
+    same_bits(expected, columns(ssp, tmp_path / "2", "--variant", "heavy"))
+    same_bits(expected, columns(tmp_path / "over.toml", tmp_path / "3"))
+    same_bits(columns(scenario, tmp_path / "4"), columns(ssp, tmp_path / "5"))
+    with pytest.raises(OrchestratorError, match='no variant "hevy"; did you mean "heavy"'):
+        read_scenario(ssp, variant="hevy")
+
+
+def test_a_connection_changed_in_the_file_is_changed_in_the_run(tmp_path: Path) -> None:
+    ssp = exported(oscillator(tmp_path), tmp_path / "cut.ssp")
+    root = description(ssp)
+    cut = next(c for c in root.iter("{*}Connection") if c.get("endElement") == "b" and c.get("endConnector") == "end.force")
+    cut.getparent().remove(cut)
+    packed(ssp, {"SystemStructure.ssd": etree.tostring(root)})
+    result = columns(ssp, tmp_path / "out")
+    force, mass = -20.0, 2.0                                  # N: the spring's at the start, where the input stays; kg
+    assert result["b.end.velocity"] == pytest.approx(force / mass * result["time"], rel=1e-9)
+
+
+def test_a_system_without_our_annotation_finds_the_joined_ports_by_itself(tmp_path: Path) -> None:
+    scenario = oscillator(tmp_path)
+    ssp = exported(scenario, tmp_path / "plain.ssp")
+    root = description(ssp)
+    root.remove(root.findall("{*}Annotations")[-1])
+    packed(ssp, {"SystemStructure.ssd": etree.tostring(root)})
+    plain = draw_up(read_scenario(ssp), ssp)
+    assert [set(c.as_run()["ports"]) for c in plain.scenario.connections] == [{"spring.a", "a.end"}, {"spring.b", "b.end"}]
+    with_steps = ("--tolerance", 1e-6)
+    theirs, ours = columns(ssp, tmp_path / "1", *with_steps), columns(scenario, tmp_path / "2", *with_steps)
+    assert theirs["b.position"][-1] == pytest.approx(ours["b.position"][-1], abs=1e-5)     # m: other intervals, same tolerance
+
+
+def test_a_run_says_which_file_it_was_of(tmp_path: Path) -> None:
+    ssp = exported(oscillator(tmp_path), tmp_path / "system.ssp", "--output", "spring.stretch")
+    assert "stretch" in {c.get("name") for c in description(ssp).iter("{*}Connector")}
+    columns(ssp, tmp_path / "out")
+    inputs = json.loads((tmp_path / "out" / "inputs.json").read_text())
+    assert inputs["scenario"] == "system.ssp"
+    assert len(inputs["scenario_sha256"]) == 64
+
+
+@pytest.mark.parametrize(("arguments", "line"), [
+    (["export", "osc.toml", "--ssp", "x.zip"], "error: --ssp x.zip: expects a file that ends in .ssp; call it x.ssp\n"),
+    (["export", "osc.toml", "--ssp", "x.ssp", "--variant", "heavy"], "error: --variant heavy: expects NAME=overlay.toml\n"),
+    (["export", "osc.toml", "--ssp", "x.ssp", "--step", "0"], "error: --step 0: is not positive, expects s; give 1e-4 or so\n"),
+    (["run", "none.ssp"], "error: none.ssp: no such file; `orchestrator list` shows the scenarios there are\n"),
+    (["run", "broken.ssp"], None),
+    (["run", "osc.toml", "--variant", "heavy"],
+     "error: --variant heavy: osc.toml is a scenario file, variants are in an .ssp; leave it out\n"),
+])  # fmt: skip
+def test_a_wrong_request_is_one_line(arguments: list[str], line: str | None, tmp_path: Path) -> None:
+    oscillator(tmp_path).rename(tmp_path / "osc.toml")
+    (tmp_path / "broken.ssp").write_text("no archive")
+    done = orchestrator(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert line is None or done.stderr == line
+
+
+def test_a_document_that_is_no_ssp_is_refused_with_its_name(tmp_path: Path) -> None:
+    for name, text, complaint in (
+        ("a.ssd", "<a version='1.0'/>", r"a\.ssd: not valid SSP 1\.0: unknown root element a"),
+        ("b.ssd", "<b version='3.0'/>", r'is of version "3\.0", expects 1\.0 or 2\.0'),
+        ("c.ssd", "<c", "not well-formed XML"),
+    ):
+        (tmp_path / name).write_text(text)
+        with pytest.raises(OrchestratorError, match=complaint):
+            parsed(tmp_path / name, name)
