@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.errors import SspError
-from orchestrator.master.slave import Value
+from orchestrator.master.slave import Kind, Value
 from orchestrator.results import references
 from orchestrator.scenario.read import read_table
 from orchestrator.scenario.record import matching_outputs
@@ -22,6 +22,8 @@ from orchestrator.ssp.write import description, text_of
 _NAME = re.compile(r"[A-Za-z0-9_+.\-]+")
 _MADE = (1980, 1, 1, 0, 0, 0)
 """Times of all members: the same scenario and FMUs give the same file to the byte."""
+
+_AS_KIND: dict[Kind, Callable[[float], Value]] = {Kind.REAL: float, Kind.INTEGER: int, Kind.BOOLEAN: bool}
 
 
 @dataclass
@@ -83,8 +85,9 @@ def solved_values(blueprint: Blueprint) -> list[dict[str, Value]]:
         faces = list(blueprint.interfaces.values())
         for link in blueprint.links:
             kind = faces[link.target_unit].variables[link.target].kind
-            value = simulation.master.value(link.source_unit, link.source)
-            values[link.target_unit][link.target] = {"Real": value, "Integer": int(value), "Boolean": bool(value)}[kind]
+            if kind in _AS_KIND:
+                value = simulation.master.value(link.source_unit, link.source)
+                values[link.target_unit][link.target] = _AS_KIND[kind](value)
     finally:
         simulation.close()
     return values

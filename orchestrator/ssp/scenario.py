@@ -27,10 +27,7 @@ def read_system(path: Path, variant: str = "") -> Tree:
     archive = opened(path, variant)
     structure = flattened(archive)
     own = _own_annotation(archive)
-    read: dict[Path, Interface] = {}
-    for component in structure.components.values():
-        read[component.fmu] = read.get(component.fmu) or read_interface(component.fmu)
-    interfaces = {path: read[component.fmu] for path, component in structure.components.items()}
+    interfaces = {path: read_interface(component.fmu) for path, component in structure.components.items()}
     wires = structure.wires()
     fed = {wire.target for wire in wires}
     values = {

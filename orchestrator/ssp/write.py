@@ -72,15 +72,15 @@ def _connectors(component: Any, interface: Interface, ends: set[str], outputs: I
 
 def _start_values(component: Any, interface: Interface, values: Mapping[str, Value]) -> list[Variable]:
     """What differs from the FMU's own start values."""
-    given = {interface.variables[name]: value for name, value in values.items() if not is_own_start(interface.variables[name], value)}
+    given = [(interface.variables[name], value) for name, value in values.items() if not is_own_start(interface.variables[name], value)]
     if given:
         bindings = etree.SubElement(component, tag("ssd:ParameterBindings"))
         inline = etree.SubElement(etree.SubElement(bindings, tag("ssd:ParameterBinding")), tag("ssd:ParameterValues"))
         parameters = etree.SubElement(etree.SubElement(inline, tag("ssv:ParameterSet"), version="1.0", name=START), tag("ssv:Parameters"))
-        for variable, value in given.items():
+        for variable, value in given:
             parameter = etree.SubElement(parameters, tag("ssv:Parameter"), name=variable.name)
             etree.SubElement(parameter, tag(f"ssv:{variable.kind}"), value=_text(variable, value), **_unit(variable))
-    return list(given)
+    return [variable for variable, _ in given]
 
 
 def is_own_start(variable: Variable, value: Value) -> bool:
