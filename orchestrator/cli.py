@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
+from orchestrator.campaign.command import campaign
 from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
@@ -135,6 +136,7 @@ def show(scenario: ScenarioName, overrides: Overrides = None, variant: Variant =
 app.command()(diagnose)
 app.command()(distinguish)
 app.command()(export)
+app.command()(campaign)
 
 
 @app.command("list")

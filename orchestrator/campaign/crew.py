@@ -52,6 +52,8 @@ class Crew:
         from distributed import Client
 
         dask.config.set({"distributed.scheduler.allowed-failures": DEATHS - 1})
+        for chatty in ("distributed", "tornado"):       # a lost worker is no news to the user: its landings are flown again
+            logging.getLogger(chatty).setLevel(logging.CRITICAL)
         with unheard():
             if self.scheduler is None:
                 self._cluster = self._own_cluster()
@@ -64,12 +66,12 @@ class Crew:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self.close()
+        self.close(at_once=kind is not None)
 
-    def close(self) -> None:
-        """End the workers that are ours, whatever they are at; another's cluster is only left."""
+    def close(self, at_once: bool = False) -> None:
+        """End the workers that are ours, `at_once` whatever they are at; another's cluster is only left."""
         client, cluster, self._client, self._cluster = self._client, self._cluster, None, None
-        if cluster is not None:
+        if cluster is not None and at_once:
             for nanny in list(cluster.workers.values()):
                 with suppress(AttributeError):
                     nanny.process.process.kill()

@@ -18,7 +18,10 @@ NOT_FLOWN = "not flown"
 
 
 def flat(summary: Mapping[str, Any]) -> dict[str, Output]:
-    """`strokes_m.+Z.left`, `peak_rates_deg_s.roll.min`: the keys of summary.json joined by dots; a pair is least and greatest."""
+    """`strokes_m.+Z.left`, `peak_rates_deg_s.roll.min`: the keys of summary.json joined by dots.
+
+    A pair of numbers is least and greatest, words stand in one cell with blanks between.
+    """
     kept = {key: value for key, value in summary.items() if key not in _ABOUT_THE_RUN}
     for key, chosen in (("master", _OF_THE_MASTER), ("comparison", _OF_THE_COMPARISON)):
         if kept.get(key) is not None:
@@ -34,6 +37,8 @@ def _flattened(tree: Mapping[str, Any], before: str) -> Iterator[tuple[str, Outp
         elif isinstance(value, list):
             if len(value) == 2 and all(item is None or isinstance(item, float) for item in value):
                 yield from zip((f"{name}.min", f"{name}.max"), value, strict=True)
+            elif all(isinstance(item, str) for item in value):
+                yield name, " ".join(value)
         elif value is None or isinstance(value, (bool, float, str)):
             yield name, value
         elif isinstance(value, int):
@@ -41,14 +46,15 @@ def _flattened(tree: Mapping[str, Any], before: str) -> Iterator[tuple[str, Outp
 
 
 def outcome(summary: Mapping[str, Any]) -> str:
-    """One word: stands, tipped, unsettled (neither at rest nor over), unknown (not recorded); of what is no landing: finished."""
+    """One word: stands, tipped, unsettled (neither at rest nor going over), unknown (not recorded); of what is no landing: finished."""
     if summary["kind"] != "touchdown":
         return "finished"
     if summary["stable"] is None:
         return "unknown"
     if summary["stable"]:
         return "stands"
-    return "tipped" if (summary["final_tilt_deg"] or 0.0) >= TIPPED * DEGREES else "unsettled"
+    beyond = ((summary["failure"] or {}).get("tip_over") or {}).get("tipped", False)
+    return "tipped" if beyond or (summary["final_tilt_deg"] or 0.0) >= TIPPED * DEGREES else "unsettled"
 
 
 def chosen(names: Sequence[str], patterns: Sequence[str], where: str) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import platform
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -53,21 +53,26 @@ def blueprint_of(about: Mapping[str, Any], stop_time: float | None = None) -> Bl
 @cache
 def made_with() -> dict[str, str]:
     """All that could change a bit: this package's stepping and what computes for it."""
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256()
-    for file in sorted(file for folder in _SOURCES for file in (package / folder).glob("*.py")):
-        digest.update(file.name.encode() + b"\0" + file.read_bytes())
     try:
         version = metadata.version(DISTRIBUTION)
     except metadata.PackageNotFoundError:
         version = "not installed"
     return {
         DISTRIBUTION: version,
-        "the master's sources": digest.hexdigest()[:12],
+        "the master's sources": sources(_SOURCES),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "machine": f"{platform.system()} {platform.machine()}",
     }
+
+
+def sources(folders: Sequence[str]) -> str:
+    """Digest of this package's files in these folders."""
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for file in sorted(file for folder in folders for file in (package / folder).glob("*.py")):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 def _require_same_versions(then: Mapping[str, str]) -> None:
