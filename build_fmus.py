@@ -4,6 +4,7 @@
     python build_fmus.py GearLeg --out DIR    some of them, elsewhere
 
     python build_fmus.py --reference RateSensor   run its reference experiment anew and keep the result in fmus/reference
+    python build_fmus.py --icons                  draw the icons anew and keep them in fmus/icons
 
 After building, each FMU is run for one step, so that numba's compiled code is in the user's cache (--no-warm leaves
 that out). The same sources give the same bytes.
@@ -45,6 +46,14 @@ def refer(file: str) -> None:
     if unit.stimulus(unit.experiment[0]):
         FOLDER.mkdir(exist_ok=True)
         (FOLDER / f"{unit.__name__}.csv").write_text(reference_text(unit), "utf-8")
+
+
+def draw_icons() -> None:
+    """Draw every icon anew."""
+    sys.path.insert(0, str(ROOT / "fmus" / "icons"))
+    from drawings import draw_all
+
+    draw_all()
 
 
 def warm(fmu: Path) -> None:
@@ -98,11 +107,14 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=FOLDER, help="where to (default build/fmus)")
     parser.add_argument("--no-warm", action="store_true", help="leave the compiled code to the first run")
     parser.add_argument("--reference", action="store_true", help="write the reference experiments anew")
+    parser.add_argument("--icons", action="store_true", help="draw the icons anew")
     parser.add_argument("--job", choices=("pack", "refer", "warm"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.job:
         {"pack": lambda it: pack(it, options.out), "refer": refer, "warm": lambda it: warm(Path(it))}[options.job](options.names[0])
         return 0
+    if options.icons:
+        draw_icons()
     known = files_by_name()
     for name in options.names:
         if name.lower().replace("_", "") not in known:

@@ -99,7 +99,8 @@ def test_terminals_name_variables_that_exist_and_the_documentation_is_there(fmus
             terminals = ElementTree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
             page = archive.read("documentation/index.html").decode()
         variables = {variable.get("name") for variable in description.iter("ScalarVariable")}
-        members = [(terminal.get("name"), member) for terminal in terminals.iter("Terminal") for member in terminal]
+        members = [(terminal.get("name"), member) for terminal in terminals.iter("Terminal")
+                   for member in terminal.iter("TerminalMemberVariable")]
         assert members, name
         for port, member in members:
             assert member.get("variableName") == f"{port}.{member.get('memberName')}"

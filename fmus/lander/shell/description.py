@@ -45,6 +45,7 @@ def model_description(unit: "type[Unit]", guid: str) -> Element:
         SubElement(categories, "Category", {"name": category})
     start, stop, step = unit.experiment
     SubElement(root, "DefaultExperiment", {"startTime": repr(start), "stopTime": repr(stop), "stepSize": repr(step)})
+    root.append(port_contract(unit))
     variables = SubElement(root, "ModelVariables")
     for scalar in unit.layout.visible:
         variables.append(scalar_variable(scalar))
@@ -63,6 +64,17 @@ def model_description(unit: "type[Unit]", guid: str) -> Element:
     SubElement(message, "String")
     root.append(model_structure(unit.layout, unit.initially))
     return root
+
+
+def port_contract(unit: "type[Unit]") -> Element:
+    """Which kind of unit this is and which variables one in its place must have; all others are optional. FMI has no word for it."""
+    missing = [name for name in unit.required if name not in unit.layout.slices]
+    if missing:
+        raise ValueError(f"{unit.__name__}: required {missing} are not declared")
+    annotations = Element("VendorAnnotations")
+    tool = SubElement(annotations, "Tool", {"name": "lander"})
+    SubElement(tool, "PortContract", {"kind": unit.kind or unit.__name__, "required": " ".join(unit.required)})
+    return annotations
 
 
 def unit_definitions(layout: Layout) -> Element:

@@ -16,6 +16,7 @@ from .terminals import terminals_and_icons
 from .unit import Unit
 
 PACKAGE = Path(__file__).parent.parent
+ICONS = Path(__file__).parents[2] / "icons"  # beside the package, as the reference experiments are
 PYTHONFMU = Path(pythonfmu.__file__).parent
 MIDNIGHT = (2000, 1, 1, 0, 0, 0)
 
@@ -32,6 +33,7 @@ def packed(unit: type[Unit], folder: Path) -> Path:
         **python_files(PACKAGE, "resources/lander"),
         **python_files(PYTHONFMU, "resources/pythonfmu", deep=False),
         **binaries(name),
+        **icons(name),
     }
     if (FOLDER / f"{name}.csv").exists():
         entries["documentation/reference.csv"] = (FOLDER / f"{name}.csv").read_bytes()
@@ -63,6 +65,14 @@ def binaries(name: str) -> dict[str, bytes]:
     folder = PYTHONFMU / "resources" / "binaries"
     files = sorted(file for file in folder.rglob("*") if file.suffix in (".so", ".dll", ".dylib"))
     return {f"binaries/{file.parent.name}/{name}{file.suffix}": file.read_bytes() for file in files}
+
+
+def icons(name: str) -> dict[str, bytes]:
+    """The unit's icon and that of its terminals; model.png is where FMI 2.0 has it."""
+    wanted = {"terminalsAndIcons/icon": name, "terminalsAndIcons/port": "port"}
+    files = {f"{entry}{kind}": ICONS / f"{stem}{kind}" for entry, stem in wanted.items() for kind in (".png", ".svg")}
+    files["model.png"] = ICONS / f"{name}.png"
+    return {entry: file.read_bytes() for entry, file in files.items() if file.exists()}
 
 
 def guid_of(entries: dict[str, bytes]) -> str:

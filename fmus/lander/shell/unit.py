@@ -46,6 +46,8 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     description: ClassVar[str] = ""
     variables: ClassVar[tuple[Record, ...]] = ()
+    kind: ClassVar[str] = ""  # of port contract; the unit's own name without
+    required: ClassVar[tuple[str, ...]] = ()  # what a unit in its place must take or give, or the vehicle cannot land with it
     initially: ClassVar[tuple[str, ...]] = ()  # inputs that initial values of outputs depend on, unless an output says otherwise
     experiment: ClassVar[tuple[float, float, float]] = (0.0, 1.0, 1e-3)  # start, stop, step of the default experiment
     reference_parameters: ClassVar[tuple[tuple[str, Start], ...]] = ()  # what the reference experiment changes

@@ -14,6 +14,7 @@ BODY: tuple[Record, ...] = (
     input_("body.angular_acceleration", (0.0, 0.0, 0.0), "rad/s2", "frame B", nominal=1.0, slope=True),
 )
 THRUST = input_("engine.thrust", 0.0, "N", "of the descent engine", nominal=1e4, slope=True)
+KIND, REQUIRED = "BodyEffect", ("effect.force", "effect.torque")
 POSE = ("body.position", "body.quaternion", "body.velocity", "body.angular_velocity")
 
 

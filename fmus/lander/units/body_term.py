@@ -6,7 +6,7 @@ from ..laws.base_motion import BaseState, base_at
 from ..laws.body_term import Term, basis_value, term_wrench
 from ..laws.vectors import Vector, add, apply_transposed, axpy, rotation, scale, sub, yaw_pitch_roll
 from ..shell import Unit, parameter
-from ._effects import BODY, POSE, THRUST, effect, motion_of, power
+from ._effects import BODY, KIND, POSE, REQUIRED, THRUST, effect, motion_of, power
 
 
 def term_of(unit: Unit, prefix: str = "") -> Term:
@@ -24,6 +24,7 @@ class BodyTerm(Unit):
     """
 
     description = "Generic term of force or torque on the body."
+    kind, required = KIND, REQUIRED
     variables = (
         parameter("coefficient", 0.0, "1", "N along an axis, N.m about one; 0: none"),
         parameter("axis", 1, "1", "1 to 6: Fx, Fy, Fz, Tx, Ty, Tz in frame B", integer=True, minimum=1, maximum=6),

@@ -51,6 +51,7 @@ class GearLeg(Unit):
     """
 
     description = "One cantilever landing gear leg with honeycomb struts and a footpad on a ball joint."
+    required = (*TWIST, "pad.force", "mount.force", "mount.torque", "pad.position", "pad.velocity")
     variables = (
         parameter("azimuth", 0.0, "rad", "of the leg about B's x axis, from +Z to +Y", minimum=-7.0, maximum=7.0),
         parameter("origin_height", 3.62, "m", "B's origin above the base of the undeformed footpads (Table 1)"),

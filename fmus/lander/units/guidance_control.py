@@ -41,6 +41,7 @@ class GuidanceControl(Unit):
     """
 
     description = "Descent engine tail-off: thrust over time since first contact."
+    required = (*(f"contact{k}" for k in range(1, 5)), "engine.force", "engine.torque")
     variables = (
         parameter("table_points", 0, "1", "points in use of the thrust table, 0: the decay", integer=True, minimum=0, maximum=POINTS),
         parameter("table_time", (0.0,) * POINTS, "s", "time since first contact, rising", minimum=0.0),

@@ -87,6 +87,7 @@ class LunarLander(Unit):
     """
 
     description = "The whole lander in one unit: what the co-simulation must equal."
+    required = ("engine.force", "engine.torque", "body.position", "body.quaternion", "body.velocity", "body.angular_velocity")
     initially = ENGINE
     variables = (
         *parameters_of(vehicle_body.VehicleBody.variables, ()),

@@ -7,7 +7,7 @@ from ..laws.base_motion import as_base, base_at
 from ..laws.slosh import Pendulum, Sway, slosh_wrench, sway_acceleration, swayed
 from ..laws.vectors import ZERO, Vector, add, apply_transposed, axpy, rotation, scale, sub
 from ..shell import Unit, parameter, state
-from ._effects import BODY, effect, motion_of, power, vector_of
+from ._effects import BODY, KIND, REQUIRED, effect, motion_of, power, vector_of
 
 LONGEST = 2e-3  # s, of the integrator
 
@@ -26,6 +26,7 @@ class PropellantSlosh(Unit):
     """
 
     description = "Propellant slosh: a pendulum's reaction on the body."
+    kind, required = KIND, REQUIRED
     variables = (
         parameter("mass", 0.0, "kg", "that sloshes, part of the vehicle's mass; 0: none", minimum=0.0),
         parameter("length", 0.6, "m", "of the pendulum", minimum=1e-2),

@@ -22,6 +22,7 @@ class RateSensor(Unit):
     """
 
     description = "Telemetry of the body's rates: lag, bias, scale, sampling and quantisation."
+    required = (*(f"rates.{axis}" for axis in AXES), *(f"telemetry.{axis}" for axis in AXES))
     variables = (
         parameter("time_constant", 0.0, "s", "time constant of the first-order lag", minimum=0.0),
         parameter("sample_interval", 0.0, "s", "time between samples, 0: continuous", minimum=0.0, maximum=1e6),

@@ -4,7 +4,7 @@ from typing import Any
 
 from ..laws.reaction_control import Pulse, fires, pulse_share, pulse_slope
 from ..shell import Unit, nanoseconds, output, parameter
-from ._effects import BODY, effect, vector_of
+from ._effects import BODY, KIND, REQUIRED, effect, vector_of
 
 
 def pulse_of(unit: Unit, prefix: str = "") -> Pulse:
@@ -19,6 +19,7 @@ class ReactionControl(Unit):
     """
 
     description = "Reaction control: a pulse of torque on the body."
+    kind, required = KIND, REQUIRED
     variables = (
         parameter("torque", (0.0, 0.0, 0.0), "N.m", "about the axes of B; 0: none"),
         parameter("start", 0.0, "s", "of the pulse, after the start of the run", minimum=0.0),

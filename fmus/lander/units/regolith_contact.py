@@ -54,6 +54,7 @@ class RegolithContact(Unit):
     """
 
     description = "Regolith under one footpad: normal contact, friction and plowing at five points."
+    required = ("pad.position", "pad.velocity", "pad.force", "contact", "gap")
     initially = PAD
     variables = (
         parameter("law", 1, "1", "1: published, with residual sink rate; 2: rate-independent", integer=True, minimum=1, maximum=2),

@@ -6,7 +6,7 @@ from ..laws.base_motion import BaseState, base_at
 from ..laws.plume import Plume, plume_force
 from ..laws.vectors import apply_transposed, rotation
 from ..shell import Unit, parameter
-from ._effects import BODY, THRUST, effect, motion_of
+from ._effects import BODY, KIND, REQUIRED, THRUST, effect, motion_of
 
 
 def plume_of(unit: Unit, prefix: str = "") -> Plume:
@@ -21,6 +21,7 @@ class ThrustGroundEffect(Unit):
     """
 
     description = "Ground effect of the descent engine's plume on the body."
+    kind, required = KIND, REQUIRED
     variables = (
         parameter("share", 0.0, "1", "of the thrust, at rest_height; 0: none"),
         parameter("height", 1.0, "m", "over which the force falls to 1/e", minimum=1e-3),

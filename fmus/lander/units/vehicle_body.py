@@ -47,6 +47,10 @@ class VehicleBody(Unit):
     """
 
     description = "Rigid body of the lander: six degrees of freedom under the wrenches of legs, engine and effects."
+    required = (
+        *(f"{port}.{member}" for port in (*LEGS[:4], "engine") for member in ("force", "torque")),
+        *(f"body.{member}" for member in ("position", "quaternion", "velocity", "angular_velocity")),
+    )
     variables = (
         parameter("mass", 7063.5, "kg", "whole vehicle, gear included (Table 1)", minimum=1.0),
         parameter("inertia", (16492.0, 17409.0, 20800.0), "kg.m2", "Ixx, Iyy, Izz of the whole vehicle, frame B (Table 1)", minimum=1e-3),
