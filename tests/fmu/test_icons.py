@@ -40,7 +40,8 @@ def test_every_icon_is_there_as_png_and_svg_and_is_not_blank(name: str, files: d
 @pytest.mark.parametrize("name", NAMES)
 def test_terminals_stand_on_the_icons_edges_each_in_a_place_of_its_own(name: str, files: dict[str, zipfile.ZipFile]) -> None:
     root = ElementTree.fromstring(files[name].read("terminalsAndIcons/terminalsAndIcons.xml"))
-    places = [[float(drawn.get(edge, "nan")) for edge in ("x1", "y1", "x2", "y2")] for drawn in root.iter("TerminalGraphicalRepresentation")]
+    drawings = root.iter("TerminalGraphicalRepresentation")
+    places = [[float(drawn.get(edge, "nan")) for edge in ("x1", "y1", "x2", "y2")] for drawn in drawings]
     assert len(places) == len(list(root.iter("Terminal"))) == len({tuple(place) for place in places})
     assert all(abs(0.5 * (x1 + x2)) == 100.0 and -100.0 < y1 < y2 < 100.0 for x1, y1, x2, y2 in places)
 
