@@ -14,6 +14,7 @@ import typer
 from rich.console import Console
 
 from orchestrator.campaign.command import campaign
+from orchestrator.check.command import check
 from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
@@ -133,6 +134,7 @@ def show(scenario: ScenarioName, overrides: Overrides = None, variant: Variant =
         console.print(part)
 
 
+app.command()(check)
 app.command()(diagnose)
 app.command()(distinguish)
 app.command()(export)

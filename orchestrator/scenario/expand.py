@@ -156,12 +156,16 @@ def _override(units: list[UnitEntry], text: str) -> None:
     chosen = [unit for unit in units if fnmatch.fnmatchcase(unit.name, pattern)]
     if not chosen:
         raise ScenarioError(f'--set {text}: no unit "{pattern}"; {nearest(pattern, [u.name for u in units])}')
-    try:
-        parsed = tomllib.loads(f"v = {value.strip()}")["v"]
-    except tomllib.TOMLDecodeError:
-        parsed = value.strip()
     for unit in chosen:
-        unit.parameters[parameter] = parsed
+        unit.parameters[parameter] = toml_value(value)
+
+
+def toml_value(text: str) -> Any:
+    """What a person wrote behind `=`: TOML, or a string when it is not."""
+    try:
+        return tomllib.loads(f"v = {text.strip()}")["v"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
 
 
 def _in_order(units: list[UnitEntry], order: list[str], where: str) -> list[UnitEntry]:
