@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from orchestrator.fmi.description import read_interface
+from orchestrator.master.converter import Derived
 from orchestrator.master.slave import Interface, Value
 from orchestrator.master.system import Link, PortPair
 from orchestrator.results.schema import read as read_results_table
@@ -33,6 +34,10 @@ class Blueprint:
     """Outputs of the start condition, per unit."""
     located: list[list[str]] = field(default_factory=list)
     """Outputs whose changes are located, per unit."""
+    derived: list[list[Derived]] = field(default_factory=list)
+    """Outputs worked out for connections in another unit of measure, frame or sign, per unit."""
+    made: list[int] = field(default_factory=list)
+    """How many links each connection came to."""
 
 
 def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None, variant: str = "") -> Scenario:
@@ -59,4 +64,6 @@ def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
     zero = matching_outputs(scenario.zero, interfaces, f"{scenario.where}: start.zero") if scenario.zero else []
     locate = scenario.table.master.locate
     located = matching_outputs(locate, interfaces, f"{scenario.where}: master.locate", DISCRETE) if locate else []
-    return Blueprint(scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located)
+    return Blueprint(
+        scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located, wiring.derived, wiring.made
+    )

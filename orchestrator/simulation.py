@@ -11,6 +11,7 @@ from orchestrator.checkpoint.schedule import Schedule
 from orchestrator.checkpoint.snapshot import Snapshot, put
 from orchestrator.errors import OrchestratorError, RunError, TrustError, UnitError, nearest
 from orchestrator.fmi.load import load
+from orchestrator.master.converter import Converter
 from orchestrator.master.master import Master
 from orchestrator.master.result import RunResult, UnitRecord
 from orchestrator.master.settings import MasterSettings
@@ -34,6 +35,8 @@ class Simulation:
         table = blueprint.scenario.table
         if slaves is None:
             slaves = [load(name, interface) for name, interface in blueprint.interfaces.items()]
+        wanted = blueprint.derived or [[]] * len(slaves)
+        slaves = [Converter(slave, derived) if derived else slave for slave, derived in zip(slaves, wanted, strict=True)]
         once = frozenset(unit.name for unit in blueprint.scenario.units if unit.once)
         self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero, blueprint.located)
         settings = MasterSettings(**table.master.model_dump(exclude={"order", "locate"}), record_interval=table.record.interval)

@@ -10,7 +10,7 @@ from orchestrator.checkpoint.checkpoint import FOLDER, Checkpoint, pack
 from orchestrator.checkpoint.file import CheckpointError, write
 from orchestrator.checkpoint.origin import origin
 from orchestrator.checkpoint.snapshot import take
-from orchestrator.checkpoint.trial import require_claims, require_truth
+from orchestrator.checkpoint.trial import require_claims, require_numbers, require_truth
 from orchestrator.errors import ScenarioError
 from orchestrator.master.master import Master
 from orchestrator.master.settings import NANOSECONDS, in_ns
@@ -39,6 +39,7 @@ class Schedule:
     def check(self, master: Master) -> None:
         """Before anything is computed."""
         require_claims(master.system.slaves)
+        require_numbers(master.system)
 
     def begin(self, master: Master, blueprint: Blueprint, fresh: bool) -> None:
         """After `prepare`. The first file is written at once: from here on this run, and no older one, is what `resume` finds."""

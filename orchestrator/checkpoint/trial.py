@@ -8,7 +8,8 @@ from orchestrator.checkpoint.snapshot import Serialises
 from orchestrator.errors import UnitError
 from orchestrator.master.master import Master
 from orchestrator.master.settings import NANOSECONDS
-from orchestrator.master.slave import Slave, Status, Vector
+from orchestrator.master.slave import Kind, Slave, Status, Vector
+from orchestrator.master.system import System
 
 
 def require_claims(slaves: Sequence[Slave]) -> None:
@@ -20,6 +21,15 @@ def require_claims(slaves: Sequence[Slave]) -> None:
                 f"{slave.name} ({model}): cannot serialise its state (canSerializeFMUstate is false), checkpoints need it of every unit;"
                 " leave --checkpoint-every out or export the unit with it"
             )
+
+
+def require_numbers(system: System) -> None:
+    """A UnitError that names the first connection whose values a checkpoint could not carry to another process."""
+    for link in system.links:
+        slave = system.slaves[link.source_unit]
+        if slave.interface.variables[link.source].kind is Kind.STRING:
+            target = f"{system.slaves[link.target_unit].name}.{link.target}"
+            raise UnitError(f"{slave.name}.{link.source} -> {target}: a checkpoint cannot keep text; leave --checkpoint-every out")
 
 
 def require_truth(master: Master) -> None:

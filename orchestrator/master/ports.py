@@ -83,6 +83,7 @@ def _ports_giving_motion(system: System, unit: int, wanted: Callable[[int, int],
     for link in system.links:
         if link.source_unit == unit and wanted(unit, link.target_unit):
             port, _, member = link.source.partition("[")[0].rpartition(".")
+            port = port.partition("#")[0]  # what is converted for a connection is motion of the port it comes from
             if member in MOTION and not _offers_model(interface, port):
                 ports[port] = None
     return list(ports)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 Value = float | int | bool | str
-_INDEX = re.compile(r"\[\d+\]$")
+_INDEX = re.compile(r"\[\d+(?:, ?\d+)*\]$")
 
 
 class Kind(StrEnum):

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from orchestrator.errors import ScenarioError, nearest
-from orchestrator.scenario.model import ConnectionTable, ScenarioTable
+from orchestrator.scenario.conversion import AS_IT_IS, Alteration
+from orchestrator.scenario.model import ConnectionTable, ScenarioTable, UnitTable
 
 _PLACEHOLDER = re.compile(r"\{(\w+)(#?)\}")
 _UNIT_NAME = re.compile(r"[A-Za-z0-9_+\-]+")
@@ -37,11 +38,11 @@ class Connection:
     both_ways: bool
     slope: bool
     scheme: str | None = None
-
+    alteration: Alteration = AS_IT_IS
 
     def as_run(self) -> dict[str, Any]:
         ends: dict[str, Any] = {"ports": [self.first, self.second]} if self.both_ways else {"from": self.first, "to": self.second}
-        return ends | {"slope": self.slope} | ({"scheme": self.scheme} if self.scheme else {})
+        return ends | {"slope": self.slope} | ({"scheme": self.scheme} if self.scheme else {}) | self.alteration.as_run()
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,8 @@ class Scenario:
 def expand(table: ScenarioTable, where: str, overrides: Sequence[str] = ()) -> Scenario:
     """All instances, in order, with overrides applied."""
     each = table.each
-    units = [entry for template in table.units for entry in _unit_entries(table, template, where)]
+    covered = {name for template in table.units for name, chosen in instances(table, template, where) if chosen}
+    units = [entry for template in table.units if template not in covered for entry in _unit_entries(table, template, where)]
     names = [unit.name for unit in units]
     for name in names:
         if not _UNIT_NAME.fullmatch(name):
@@ -89,15 +91,24 @@ def expand(table: ScenarioTable, where: str, overrides: Sequence[str] = ()) -> S
 
 
 def _unit_entries(table: ScenarioTable, template: str, where: str) -> list[UnitEntry]:
+    """A table named like an instance of another takes that one's place, and with the same FMU its parameters."""
     unit = table.units[template]
     entries = []
     for name, chosen in instances(table, template, where):
-        values = {
-            key: _for_instance(value, chosen, table.each, f"{where}: {name}.{key}") if isinstance(value, dict) else value
-            for key, value in unit.parameters.items()
-        }
-        entries.append(UnitEntry(name, unit.fmu, unit.once, values))
+        values = _values(unit, name, chosen, table.each, where)
+        own = table.units.get(name, unit) if chosen else unit
+        if own is not unit:
+            values = (values if own.fmu == unit.fmu else {}) | _values(own, name, {}, table.each, where)
+        entries.append(UnitEntry(name, own.fmu, own.once, values))
     return entries
+
+
+def _values(unit: UnitTable, name: str, chosen: Mapping[str, tuple[str, int]], each: Each, where: str) -> dict[str, Any]:
+    """Parameters of one instance."""
+    return {
+        key: _for_instance(value, chosen, each, f"{where}: {name}.{key}") if isinstance(value, dict) else value
+        for key, value in unit.parameters.items()
+    }
 
 
 def instances(table: ScenarioTable, template: str, where: str) -> list[tuple[str, dict[str, tuple[str, int]]]]:
@@ -122,7 +133,9 @@ def _for_instance(value: dict[str, Any], chosen: Mapping[str, tuple[str, int]], 
 
 def _connections(entry: ConnectionTable, each: Each, where: str) -> list[Connection]:
     first, second = entry.ports if entry.ports is not None else (entry.source or "", entry.target or "")
-    return [Connection(a, b, entry.ports is not None, entry.slope, entry.scheme) for a, b in _instances((first, second), each, where)]
+    altered = Alteration.of(entry.frame, entry.scale, entry.offset)
+    ends = _instances((first, second), each, where)
+    return [Connection(a, b, entry.ports is not None, entry.slope, entry.scheme, altered) for a, b in ends]
 
 
 def _instances(templates: tuple[str, ...], each: Each, where: str) -> list[tuple[str, ...]]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from orchestrator.master.settings import MasterSettings
 
 Scalar = bool | int | float | str
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Numbers = Finite | Annotated[list[Finite], Field(min_length=1)]
+Rows = list[list[Finite]]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 _DEFAULT = MasterSettings()
 
@@ -37,13 +40,28 @@ class ConnectionTable(Table):
     """Send slopes with means on this connection."""
     scheme: Literal["fixed-point", "quasi-newton", "explicit"] | None = None
     """How to couple it, instead of what the master would choose."""
+    frame: Rows | None = None
+    """Matrix that turns vectors of `from` (of the first port) into the frame of `to` (of the second)."""
+    scale: Numbers | None = None
+    """Factor, or one for each element; -1 changes the sign. After units of measure and frame."""
+    offset: Numbers | None = None
+    """Added last, in the unit of measure of `to`."""
 
     @model_validator(mode="after")
     def _one_of_two_forms(self) -> ConnectionTable:
         by_variable = self.source is not None and self.target is not None
         if (self.ports is None) == (not by_variable) or (self.ports is not None and (self.source or self.target)):
             raise ValueError("give either ports = [a, b] or both from and to")
+        if self.ports is not None and (self.scale is not None or self.offset is not None):
+            raise ValueError("scale and offset belong to from and to; ports, which are joined both ways, take a frame only")
         return self
+
+    @field_validator("frame")
+    @classmethod
+    def _a_frame(cls, rows: list[list[float]] | None) -> list[list[float]] | None:
+        if rows is not None and not _orthogonal(rows):
+            raise ValueError("expects three rows of three, orthogonal and of length 1, e.g. [[0, 0, 1], [1, 0, 0], [0, 1, 0]]")
+        return rows
 
 
 class StartTable(Table):
@@ -104,16 +122,23 @@ class ScenarioTable(Table):
     results: dict[str, Any] = {}
 
 
+def _orthogonal(rows: list[list[float]]) -> bool:
+    if [len(row) for row in rows] != [3, 3, 3]:
+        return False
+    products = {(i, j): sum(a * b for a, b in zip(rows[i], rows[j], strict=True)) for i in range(3) for j in range(3)}
+    return all(abs(product - (i == j)) < 1e-6 for (i, j), product in products.items())
+
+
 def known_keys(path: tuple[int | str, ...]) -> list[str]:
     """Keys allowed in the table at this path of a scenario."""
     tables: dict[str, type[Table]] = {"master": MasterTable, "record": RecordTable, "start": StartTable}
     match path:
         case ():
-            return [*ScenarioTable.model_fields, "extends"]
+            return [*ScenarioTable.model_fields, "extends", "disconnect"]
         case ("units", _):
             return list(UnitTable.model_fields)
         case ("connections", _):
-            return ["ports", "from", "to", "slope", "scheme"]
+            return ["ports", "from", "to", *(key for key in ConnectionTable.model_fields if key not in ("ports", "source", "target"))]
         case (str(name),) if name in tables:
             return list(tables[name].model_fields)
     return []

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from orchestrator.errors import ScenarioError
+from orchestrator.errors import ScenarioError, nearest
 from orchestrator.scenario.faults import first_fault
 from orchestrator.scenario.model import ScenarioTable, known_keys
 
@@ -40,11 +41,52 @@ def check_table(tree: Mapping[str, Any], where: str) -> ScenarioTable:
 
 
 def merge(base: Tree, overlay: Tree) -> Tree:
-    """Tables merge key by key, an overlay's connections are added to the base's, anything else replaces what was there."""
+    """Tables merge key by key, an overlay's connections are added to the base's, anything else replaces what was there.
+
+    A unit that is given another FMU is another unit: nothing of the base's table for it stays. `disconnect` takes connections of the
+    base away.
+    """
+    merged = _merged(_without_replaced_units(base, overlay), overlay)
+    if "disconnect" in merged:
+        merged["connections"] = _left(base.get("connections", []), merged.pop("disconnect")) + list(overlay.get("connections", []))
+    return merged
+
+
+def _without_replaced_units(base: Tree, overlay: Tree) -> Tree:
+    units, new = base.get("units"), overlay.get("units")
+    if not isinstance(units, dict) or not isinstance(new, dict):
+        return base
+
+    def replaced(name: str) -> bool:
+        one, other = units[name], new.get(name)
+        return isinstance(one, dict) and isinstance(other, dict) and "fmu" in other and other["fmu"] != one.get("fmu")
+
+    return base | {"units": {name: {} if replaced(name) else unit for name, unit in units.items()}}
+
+
+def _left(connections: list[Tree], patterns: Any) -> list[Tree]:
+    """Connections none of whose ends is named by a glob over "unit", "unit.port" or "unit.variable"."""
+    if not isinstance(patterns, list) or not all(isinstance(pattern, str) for pattern in patterns):
+        raise ScenarioError(f'disconnect = {patterns!r}: expects a list of names, e.g. ["guidance", "body.effect1"]')
+    ends = [[str(end) for end in connection.get("ports") or (connection.get("from"), connection.get("to"))] for connection in connections]
+    for pattern in patterns:
+        if not any(_names(pattern, end) for both in ends for end in both):
+            known = [end for both in ends for end in both]
+            raise ScenarioError(f'disconnect: "{pattern}" is an end of no connection of the base; {nearest(pattern, known)}')
+    named = [any(_names(pattern, end) for pattern in patterns for end in both) for both in ends]
+    return [connection for connection, gone in zip(connections, named, strict=True) if not gone]
+
+
+def _names(pattern: str, end: str) -> bool:
+    literal = pattern.replace("[", "[[]")
+    return fnmatchcase(end, literal) or fnmatchcase(end.partition(".")[0], literal)
+
+
+def _merged(base: Tree, overlay: Tree) -> Tree:
     merged = dict(base)
     for key, value in overlay.items():
         if isinstance(value, dict) and isinstance(merged.get(key), dict):
-            merged[key] = merge(merged[key], value)
+            merged[key] = _merged(merged[key], value)
         elif key == "connections" and isinstance(value, list) and isinstance(merged.get(key), list):
             merged[key] = [*merged[key], *value]
         else:
@@ -67,13 +109,20 @@ def _read(path: Path, above: tuple[Path, ...]) -> Tree:
     _anchor_paths(tree, path.parent)
     extended = tree.pop("extends", None)
     if extended is None:
+        if "disconnect" in tree:
+            raise ScenarioError(f"{path}: disconnect: takes connections of a base away, but nothing is extended; remove it")
         return tree
     if not isinstance(extended, str):
         raise ScenarioError(f"{path}: extends = {extended!r}: expects the name of one TOML file")
     file, mark, variant = extended.partition(f"{SSP}#")
     if mark or extended.endswith(SSP):
-        return merge(_read_ssp(path.parent / (file + SSP if mark else extended), variant), tree)
-    return merge(_read(path.parent / extended, (*above, path.resolve())), tree)
+        base = _read_ssp(path.parent / (file + SSP if mark else extended), variant)
+    else:
+        base = _read(path.parent / extended, (*above, path.resolve()))
+    try:
+        return merge(base, tree)
+    except ScenarioError as error:
+        raise ScenarioError(f"{path.name}: {error}") from None
 
 
 def _read_ssp(path: Path, variant: str) -> Tree:

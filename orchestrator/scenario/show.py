@@ -41,21 +41,13 @@ def _claims(interface: Interface) -> list[str]:
 
 
 def _connections(blueprint: Blueprint) -> Table:
-    table = Table("from", "", "to", "values", "scheme", title="Connections", title_justify="left")
-    names = list(blueprint.interfaces)
-    for connection in blueprint.scenario.connections:
-        unit, _, first = connection.first.partition(".")
-        other, _, second = connection.second.partition(".")
-        ends = {(names.index(unit), first), (names.index(other), second)}
-        made = [k for k in blueprint.links if _belongs(k.source_unit, k.source, ends) and _belongs(k.target_unit, k.target, ends)]
+    table = Table("from", "", "to", "values", "altered by", "scheme", title="Connections", title_justify="left")
+    for connection, made in zip(blueprint.scenario.connections, blueprint.made, strict=True):
         arrow = "<->" if connection.both_ways else "->"
-        table.add_row(Text(connection.first), arrow, Text(connection.second), str(len(made)), connection.scheme or "by the master")
+        altered = ", ".join(connection.alteration.as_run())
+        scheme = connection.scheme or "by the master"
+        table.add_row(Text(connection.first), arrow, Text(connection.second), str(made), altered, scheme)
     return table
-
-
-def _belongs(unit: int, variable: str, ends: set[tuple[int, str]]) -> bool:
-    stem = variable.partition("[")[0]
-    return (unit, variable) in ends or (unit, stem) in ends or (unit, stem.rpartition(".")[0]) in ends
 
 
 def _parameters(blueprint: Blueprint) -> Table:

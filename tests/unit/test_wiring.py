@@ -4,8 +4,9 @@ import pytest
 
 from orchestrator.errors import WiringError
 from orchestrator.master.slave import Interface, Kind, Variable
+from orchestrator.scenario.conversion import unit_conversion
 from orchestrator.scenario.expand import Connection
-from orchestrator.scenario.wiring import Wiring, same_unit
+from orchestrator.scenario.wiring import Wiring
 
 METRE = (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 NEWTON = (1.0, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -60,9 +61,10 @@ def test_a_single_variable_and_a_whole_vector_connect_one_way() -> None:
 
 
 def test_an_undeclared_unit_fits_and_names_of_one_dimension_fit() -> None:
-    assert same_unit(Variable("a", unit=""), Variable("b", unit="N"))
-    assert same_unit(Variable("a", unit="m", dimension=METRE), Variable("b", unit="metre", dimension=METRE))
-    assert not same_unit(Variable("a", unit="m", dimension=METRE), Variable("b", unit="km", dimension=(*METRE[:8], 1e3, 0.0)))
+    assert unit_conversion(Variable("a", unit=""), Variable("b", unit="N")) == (1.0, 0.0)
+    assert unit_conversion(Variable("a", unit="m", dimension=METRE), Variable("b", unit="metre", dimension=METRE)) == (1.0, 0.0)
+    assert unit_conversion(Variable("a", unit="m", dimension=METRE), Variable("b", unit="N", dimension=NEWTON)) is None
+    assert unit_conversion(Variable("a", unit="m"), Variable("b", unit="km")) is None
 
 
 REFUSED = {
