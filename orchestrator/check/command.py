@@ -17,7 +17,7 @@ def check(
     fmu: Annotated[Path, typer.Argument(help="The FMU to check.")],
     kind: Annotated[
         str | None,
-        typer.Option("--as", help="Kind of unit it is to stand in for, as GearLeg or GuidanceControl [default: guessed from its ports]."),
+        typer.Option("--as", help="Kind of unit it is to stand in for, as GearLeg or GuidanceControl; without it, guessed from its ports."),
     ] = None,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="parameter=value to try it with; may be repeated.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", help="File to write the findings to as well.")] = None,
