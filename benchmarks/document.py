@@ -1,4 +1,6 @@
-"""docs/benchmarks.md from the files of a run: what stands between `<!-- begin: NAME -->` and `<!-- end: NAME -->` is the table NAME.md."""
+"""docs/benchmarks.md and docs/ssp.md from the files of a run.
+
+What stands between `<!-- begin: NAME -->` and `<!-- end: NAME -->` is the table NAME.md."""
 
 from __future__ import annotations
 
@@ -8,7 +10,7 @@ from pathlib import Path
 
 from packs import ROOT
 
-DOCUMENT = ROOT / "docs" / "benchmarks.md"
+DOCUMENTS = [ROOT / "docs" / name for name in ("benchmarks.md", "ssp.md")]
 BLOCK = r"<!-- begin: (\S+) -->.*?<!-- end: \1 -->"
 
 
@@ -21,7 +23,8 @@ def renew(out: Path) -> None:
             return found[0]
         return f"<!-- begin: {found[1]} -->\n\n{path.read_text('utf-8').strip()}\n\n<!-- end: {found[1]} -->"
 
-    DOCUMENT.write_text(re.sub(BLOCK, table, DOCUMENT.read_text("utf-8"), flags=re.DOTALL), "utf-8")
+    for document in DOCUMENTS:
+        document.write_text(re.sub(BLOCK, table, document.read_text("utf-8"), flags=re.DOTALL), "utf-8")
     images = ROOT / "docs" / "images"
     images.mkdir(exist_ok=True)
     for figure in out.glob("bench_*.png"):

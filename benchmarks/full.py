@@ -17,7 +17,7 @@ from tables import Row, finite, write_json, write_table
 from task import task_of
 
 from orchestrator.master.result import RunResult
-from orchestrator.simulation import Simulation, draw_up, read_scenario, run_scenario
+from orchestrator.simulation import draw_up, read_scenario, run_scenario
 
 SCENARIO = ROOT / "scenarios" / "apollo11_adams.toml"
 TWIN = ROOT / "scenarios" / "apollo11_adams_twin.toml"
@@ -82,16 +82,8 @@ def our_row(stop: float, longest: float, tolerance: float, reference: Reference)
 
 def peer_task() -> dict[str, Any]:
     """The vehicle for a peer: solved start values, and every connected input set to what it is at the start."""
-    changes = {"stop_time": 1e-3, "fmus": str(FMUS), "record": {"interval": 0.0, "variables": ["*"]}}
-    blueprint = draw_up(read_scenario(SCENARIO, (), changes), SCENARIO)
-    simulation = Simulation(blueprint)
-    result = simulation.run()
-    simulation.close()
-    values = [dict(given) for given in blueprint.values]
-    names = list(blueprint.interfaces)
-    for link in blueprint.links:
-        values[link.target_unit][link.target] = float(result.columns[f"{names[link.source_unit]}.{link.source}"][0])
-    return {**task_of(blueprint, values, [*BODY, *STROKES]), "stop": STOP}
+    blueprint = draw_up(read_scenario(SCENARIO, (), {"stop_time": STOP, "fmus": str(FMUS)}), SCENARIO)
+    return task_of(blueprint, [*BODY, *STROKES])
 
 
 def peer_row(peer: str, step: float, base: dict[str, Any], reference: Reference) -> Row:

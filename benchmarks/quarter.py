@@ -53,7 +53,7 @@ def task() -> dict[str, Any]:
     references = {unit: {v.name: v.reference for v in face.variables.values()} for unit, face in blueprint.interfaces.items()}
     vehicle, soil = references["vehicle"], references["soil"]
     bond = ["vehicle", vehicle["pad.velocity"], vehicle["pad.force"], "soil", soil["pad.force"], soil["pad.velocity"]]
-    return {**task_of(blueprint, blueprint.values, [PAD]), "bonds": [bond]}
+    return {**task_of(blueprint, [PAD]), "bonds": [bond]}
 
 
 def run_case(case: Case, base: dict[str, Any]) -> Outcome:

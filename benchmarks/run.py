@@ -1,8 +1,8 @@
 """Benchmarks: side by side with other masters, convergence, overhead, scaling, profile.
 
-    python benchmarks/run.py NAME --out DIR      NAME: quarter-vehicle, full-vehicle, convergence, overhead, legs, profile, all
+    python benchmarks/run.py NAME --out DIR      NAME: quarter-vehicle, full-vehicle, convergence, overhead, legs, profile, ssp, all
 
-Writes NAME.json, tables (Markdown and CSV) and figures into DIR, and, with --docs, renews the tables and figures of docs/benchmarks.md.
+Writes NAME.json, tables (Markdown and CSV) and figures into DIR, and, with --docs, renews those of docs/benchmarks.md and docs/ssp.md.
 The other masters come from the package index into environments of their own under build/peers; one that cannot be
 installed or run here has a row that says why.
 """
@@ -16,14 +16,14 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 MODULES = {"quarter-vehicle": "quarter", "full-vehicle": "full", "convergence": "convergence", "overhead": "overhead", "legs": "legs",
-           "profile": "profiling"}
+           "profile": "profiling", "ssp": "exported"}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("name", choices=[*MODULES, "all"])
     parser.add_argument("--out", type=Path, required=True, help="folder for tables, figures and NAME.json")
-    parser.add_argument("--docs", action="store_true", help="renew docs/benchmarks.md from DIR afterwards")
+    parser.add_argument("--docs", action="store_true", help="renew docs/benchmarks.md and docs/ssp.md from DIR afterwards")
     options = parser.parse_args()
     out = options.out.resolve()
     out.mkdir(parents=True, exist_ok=True)

@@ -1,16 +1,24 @@
-"""A scenario as a job for any master: its units, start values and connections by name, value reference and type."""
+"""A scenario as a job for any master: an .ssp, and its units, start values and connections by name, value reference and type."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from orchestrator.master.slave import Kind, Value
+from packs import ROOT
+
+from orchestrator.master.slave import Kind
 from orchestrator.simulation import Blueprint
+from orchestrator.ssp.export import export_blueprint, solved_values
+
+FOLDER = ROOT / "build" / "benchmarks" / "ssp"
 
 
-def task_of(blueprint: Blueprint, values: Sequence[dict[str, Value]], watch: Sequence[str]) -> dict[str, Any]:
-    """`values` are the start values by unit; `watch` names outputs as "unit.variable"."""
+def task_of(blueprint: Blueprint, watch: Sequence[str]) -> dict[str, Any]:
+    """`watch` names outputs as "unit.variable"."""
+    values = solved_values(blueprint)
+    ssp = FOLDER / f"{blueprint.scenario.where}.ssp"
+    export_blueprint(blueprint, ssp, watch)
     names = list(blueprint.interfaces)
     faces = list(blueprint.interfaces.values())
 
@@ -25,6 +33,7 @@ def task_of(blueprint: Blueprint, values: Sequence[dict[str, Value]], watch: Seq
     ]
     watched = [next((u, w.removeprefix(f"{n}.")) for u, n in enumerate(names) if w.startswith(f"{n}.")) for w in watch]
     return {
+        "ssp": str(ssp),
         "units": [{"name": name, "fmu": str(face.path)} for name, face in zip(names, faces, strict=True)],
         "start": start,
         "links": [[*end(link.source_unit, link.source), *end(link.target_unit, link.target)] for link in blueprint.links],

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from orchestrator.errors import SspError
 from orchestrator.fmi.description import read_interface
 from orchestrator.master.converter import Derived
 from orchestrator.master.slave import Interface, Value
@@ -14,7 +15,7 @@ from orchestrator.results.schema import read as read_results_table
 from orchestrator.scenario.expand import Scenario, expand
 from orchestrator.scenario.locate import find_fmu, fmu_folder
 from orchestrator.scenario.parameters import start_values
-from orchestrator.scenario.read import Tree, check_table, merge, read_table
+from orchestrator.scenario.read import SSP, Tree, check_table, merge, read_table
 from orchestrator.scenario.record import DISCRETE, matching_outputs
 from orchestrator.scenario.wiring import Wiring
 
@@ -44,6 +45,8 @@ def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | Non
     """The scenario said out in full; `changes` are merged over the file (e.g. {"stop_time": 2.0}); `variant` of an .ssp."""
     tree = merge(read_table(path, variant), changes or {})
     where = f"{path.name}#{variant}" if variant else path.name
+    if path.suffix == SSP and "stop_time" not in tree:
+        raise SspError(f"{where}: does not say how long to run; give --stop-time SECONDS")
     return expand(check_table(tree, where), where, overrides)
 
 

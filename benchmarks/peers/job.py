@@ -1,6 +1,7 @@
 """What every peer's script shares: the job it reads and the result it writes. Runs in the peer's own environment: standard library only.
 
-A job is JSON: `units` (name, fmu), `start` (unit, variable, reference, type, value), `links` (unit, variable, reference, type, and
+A job is JSON: `ssp`, the system as `orchestrator export` writes it, and for those who cannot read one `units` (name, fmu), `start`
+(unit, variable, reference, type, value), `links` (unit, variable, reference, type, and
 the same of the target), `bonds` (unit, output and input reference, twice), `watch` (unit, variable, reference), `stop`, `step`,
 `tolerance`, `method`. A result holds `times`, `values` by watched variable and `step_s`, the wall time of stepping alone.
 """

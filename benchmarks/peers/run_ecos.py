@@ -1,27 +1,14 @@
-"""ecos through ecospy: its fixed-step algorithm."""
+"""ecos through ecospy: its fixed-step algorithm on an .ssp; it has to be told which parameter set to start from."""
 
 from time import perf_counter
 
 import job
-from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
-from ecospy.EcosParameterSet import EcosParameterSet
+from ecospy import EcosLib, EcosSimulation
 
 
 def main():
     task = job.read()
-    structure = EcosSimulationStructure()
-    for unit in task["units"]:
-        structure.add_model(unit["name"], unit["fmu"])
-    joiners = {"Real": structure.make_real_connection, "Integer": structure.make_int_connection, "Boolean": structure.make_bool_connection}
-    for unit, name, _, kind, target, taken, _, _ in task["links"]:
-        joiners[kind](f"{unit}::{name}", f"{target}::{taken}")
-    parameters = EcosParameterSet()
-    adders = {"Real": (parameters.add_real, float), "Integer": (parameters.add_int, int), "Boolean": (parameters.add_bool, bool)}
-    for unit, name, _, kind, value in task["start"]:
-        add, as_kind = adders[kind]
-        add(f"{unit}::{name}", as_kind(value))
-    structure.add_parameter_set("start", parameters)
-    simulation = EcosSimulation(structure=structure, step_size=task["step"])
+    simulation = EcosSimulation(ssp_path=task["ssp"], step_size=task["step"])
     if not simulation.init(parameter_set="start"):
         raise RuntimeError(EcosLib.get_last_error())
     names = {job.label(watched): f"{watched[0]}::{watched[1]}" for watched in task["watch"]}

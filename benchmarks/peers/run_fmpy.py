@@ -1,48 +1,34 @@
-"""FMPy: its SSP simulation, of an SSP written for the occasion."""
+"""FMPy on an .ssp, with its own simulate_ssp. Two things of the file it passes over are given to it from here:
 
-import shutil
-import zipfile
-from pathlib import Path
-from tempfile import TemporaryDirectory
+- parameter bindings: simulate_ssp takes one parameter set, with names "component.variable", and reads none of the bindings itself;
+- the start: it sets every connected input to zero before the first step. A unit that is told the body's attitude is a quaternion of
+  zero length refuses, and rightly. Each connector is therefore given what its own FMU holds after initialisation.
+"""
+
 from time import perf_counter
 from types import SimpleNamespace
-from xml.etree.ElementTree import Element, SubElement, tostring
 
 import job
 from fmpy.ssp import simulation
 from fmpy.ssp.simulation import simulate_ssp
-
-SSD, SSC = "http://ssp-standard.org/SSP1/SystemStructureDescription", "http://ssp-standard.org/SSP1/SystemStructureCommon"
-
-
-def written(task, path):
-    """A system structure description with the FMUs beside it."""
-    root = Element("ssd:SystemStructureDescription", {"xmlns:ssd": SSD, "xmlns:ssc": SSC, "version": "1.0", "name": "benchmark"})
-    system = SubElement(root, "ssd:System", {"name": "benchmark"})
-    elements = SubElement(system, "ssd:Elements")
-    with zipfile.ZipFile(path, "w") as archive:
-        for fmu in sorted({unit["fmu"] for unit in task["units"]}):
-            archive.write(fmu, f"resources/{Path(fmu).name}")
-        for unit in task["units"]:
-            source = f"resources/{Path(unit['fmu']).name}"
-            about = {"name": unit["name"], "type": "application/x-fmu-sharedlibrary", "source": source}
-            component = SubElement(elements, "ssd:Component", about)
-            connectors = SubElement(component, "ssd:Connectors")
-            for name, kind in sorted(ends(task, unit["name"])):
-                connector = SubElement(connectors, "ssd:Connector", {"name": name, "kind": kind[0]})
-                SubElement(connector, f"ssc:{kind[1]}")
-        connections = SubElement(system, "ssd:Connections")
-        for unit, name, _, _, target, taken, _, _ in task["links"]:
-            ends_of = {"startElement": unit, "startConnector": name, "endElement": target, "endConnector": taken}
-            SubElement(connections, "ssd:Connection", ends_of)
-        archive.writestr("SystemStructure.ssd", tostring(root, encoding="UTF-8", xml_declaration=True))
+from fmpy.ssp.ssd import find_components, read_ssd
 
 
-def ends(task, unit):
-    """A unit's connectors: (name, (kind, type)); what is watched is one too."""
-    found = {(link[1], ("output", link[3])) for link in task["links"] if link[0] == unit}
-    found |= {(link[5], ("input", link[7])) for link in task["links"] if link[4] == unit}
-    return found | {(watched[1], ("output", "Real")) for watched in task["watch"] if watched[0] == unit}
+def bound_parameters(path):
+    """The inline parameter sets of all components, as one."""
+    found = [
+        SimpleNamespace(name=f"{component.name}.{parameter.name}", value=_number(parameter))
+        for component in find_components(read_ssd(path).system)
+        for binding in component.parameterBindings
+        for values in binding.parameterValues
+        for parameter in values.parameters
+    ]
+    return SimpleNamespace(parameters=found)
+
+
+def _number(parameter):
+    """Its set_value compares a Boolean with 0.0, so that the text "false" would be true."""
+    return parameter.value == "true" if parameter.type == "Boolean" else float(parameter.value)
 
 
 def main():
@@ -50,23 +36,20 @@ def main():
     moments = {}
     instantiate, free = simulation.instantiate_fmu, simulation.free_fmu
 
-    def instantiate_timed(*arguments, **options):
-        instantiate(*arguments, **options)
+    def instantiate_and_read(component, *arguments, **options):
+        instantiate(component, *arguments, **options)
+        for connector in component.connectors:
+            connector.value = simulation.get_value(component, connector.name)
         moments["begin"] = perf_counter()
 
     def free_timed(component):
         moments.setdefault("end", perf_counter())
         free(component)
 
-    simulation.instantiate_fmu, simulation.free_fmu = instantiate_timed, free_timed
-    start = [SimpleNamespace(name=f"{unit}.{name}", value=value) for unit, name, _, _, value in task["start"]]
-    folder = TemporaryDirectory()
-    path = Path(folder.name) / "benchmark.ssp"
-    written(task, path)
+    simulation.instantiate_fmu, simulation.free_fmu = instantiate_and_read, free_timed
     end = task["stop"] - 0.5 * task["step"]
-    result = simulate_ssp(str(path), stop_time=end, step_size=task["step"], parameter_set=SimpleNamespace(parameters=start))
+    result = simulate_ssp(task["ssp"], stop_time=end, step_size=task["step"], parameter_set=bound_parameters(task["ssp"]))
     values = {job.label(watched): [float(x) for x in result[job.label(watched)]] for watched in task["watch"]}
-    shutil.rmtree(folder.name)
     # a row's values are those after the step, its time is that before it
     job.write([float(t) + task["step"] for t in result["time"]], values, moments["end"] - moments["begin"])
 

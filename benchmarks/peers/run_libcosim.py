@@ -1,4 +1,4 @@
-"""libcosim through libcosimpy: the fixed-step algorithm, or ECCO with its power bonds."""
+"""libcosim through libcosimpy: the fixed-step algorithm on an .ssp, or ECCO with its power bonds."""
 
 from time import perf_counter
 
@@ -16,22 +16,21 @@ SHORTEST, LONGEST = 1e-6, 1e-3  # s: what ECCO may choose
 SHRINK, GROW = 0.2, 1.5  # per step; libcosimpy's own 0.01 and 0.2 would shrink every step down to the shortest
 
 
-def execution_of(task):
-    """The execution and, for ECCO, its algorithm."""
-    if task["method"] != "ecco":
-        return CosimExecution.from_step_size(round(task["step"] * NANOSECONDS)), None
+def from_file(task):
+    """Fixed steps, everything else straight from the .ssp."""
+    execution = CosimExecution.from_ssp_file(task["ssp"], round(task["step"] * NANOSECONDS))
+    index = {unit["name"]: execution.slave_index_from_instance_name(unit["name"]) for unit in task["units"]}
+    return execution, None, index
+
+
+def with_bonds(task):
+    """ECCO, which needs power bonds, and no file can say them: put together call by call."""
     parameters = EccoParams(
         step_size=task["step"], min_step_size=SHORTEST, max_step_size=LONGEST, min_change_rate=SHRINK, max_change_rate=GROW,
         abs_tolerance=task["tolerance"], rel_tolerance=task["tolerance"],
     )
     algorithm = CosimAlgorithm.create_ecco_algorithm(parameters)
-    return CosimExecution.from_algorithm(algorithm), algorithm
-
-
-def main():
-    task = job.read()
-    log_output_level(CosimLogLevel.ERROR)
-    execution, algorithm = execution_of(task)
+    execution = CosimExecution.from_algorithm(algorithm)
     slaves = [CosimLocalSlave(unit["fmu"], unit["name"]) for unit in task["units"]]
     index = {unit["name"]: execution.add_local_slave(slave) for unit, slave in zip(task["units"], slaves, strict=True)}
     setters = {"Real": execution.real_initial_value, "Integer": execution.integer_initial_value, "Boolean": execution.boolean_initial_value}
@@ -46,10 +45,16 @@ def main():
     for unit, name, reference, kind, target, _, target_reference, _ in task["links"]:
         if joiners[kind](index[unit], reference, index[target], target_reference) != 0:
             raise RuntimeError(f"{unit}.{name}: connection refused")
-    if algorithm is not None:
-        for one, output, taken, other, other_output, other_taken in task["bonds"]:
-            if algorithm.add_power_bond(index[one], output, taken, index[other], other_output, other_taken) != 0:
-                raise RuntimeError(f"{one}: power bond refused")
+    for one, output, taken, other, other_output, other_taken in task["bonds"]:
+        if algorithm.add_power_bond(index[one], output, taken, index[other], other_output, other_taken) != 0:
+            raise RuntimeError(f"{one}: power bond refused")
+    return execution, algorithm, index
+
+
+def main():
+    task = job.read()
+    log_output_level(CosimLogLevel.ERROR)
+    execution, algorithm, index = with_bonds(task) if task["method"] == "ecco" else from_file(task)
     most = round(task["stop"] / (SHORTEST if algorithm else task["step"])) + 10
     observer = CosimObserver.create_time_series(min(most, 2_000_000))
     execution.add_observer(observer)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,7 @@ _SCHEMAS = {
     "ParameterSet": "SystemStructureParameterValues.xsd",
     "ParameterMapping": "SystemStructureParameterMapping.xsd",
 }
+_NAMESPACE = re.compile(r"\{[^}]*\}")
 _VERSIONS = ("1.", "2.")
 
 
@@ -93,7 +95,8 @@ def schema_fault(root: Any) -> str:
     if schema.validate(root):
         return ""
     first = schema.error_log[0]
-    return f"line {first.line}: {first.message}".replace("\n", " ")
+    message = _NAMESPACE.sub("", first.message).replace("\n", " ").rstrip(". ")
+    return f"line {first.line}: {message}"
 
 
 @cache

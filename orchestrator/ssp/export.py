@@ -59,6 +59,13 @@ def export(
     return list(contents.texts)
 
 
+def export_blueprint(blueprint: Blueprint, to: Path, outputs: Sequence[str] = ()) -> None:
+    """The same for a system that is drawn up already."""
+    contents = Contents()
+    _add(contents, DEFAULT_SSD, blueprint, outputs, None)
+    _pack(contents, to)
+
+
 def _variant(base: Path, overlay: Path, overrides: Sequence[str]) -> Any:
     """An overlay that extends a scenario is one; another is laid over the base."""
     tree = read_table(overlay)

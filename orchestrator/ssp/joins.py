@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from orchestrator.errors import WiringError
+from orchestrator.errors import SspError, WiringError
 from orchestrator.master.slave import Interface
+from orchestrator.scenario.conversion import Alteration
 from orchestrator.scenario.expand import Connection
 from orchestrator.scenario.wiring import Wiring
+from orchestrator.ssp.ways import PLAIN, Way, way_of
 
 Ends = tuple[str, str]
 """Source and target, each "unit.variable"."""
+ALTERATION = {"frame", "scale", "offset"}
+"""Keys of a scenario's connection that change the numbers."""
 
 
 @dataclass(frozen=True)
@@ -23,32 +27,38 @@ class Joined:
     ends: list[Ends]
 
 
-def joins(interfaces: Mapping[str, Interface], there: Sequence[Ends], where: str, own: list[dict[str, Any]] | None) -> list[Joined]:
+def joins(interfaces: Mapping[str, Interface], there: Mapping[Ends, Way], where: str, own: list[dict[str, Any]] | None) -> list[Joined]:
     """Our annotation is believed as far as the description's own connections bear it out: a connection changed there is changed here."""
     tables = list(_candidates(interfaces, there)) if own is None else own
-    left, found = set(there), []
+    left, found = dict(there), []
     for table in tables:
-        ends = _links(interfaces, table, where)
-        if ends and left.issuperset(ends):
-            left.difference_update(ends)
-            found.append(Joined(table, ends))
+        links = _links(interfaces, table, where)
+        plain = not ALTERATION.intersection(table)          # where nothing is asked for, a unit conversion may go without saying
+        if links and all(left.get(ends) == way or (plain and left.get(ends) == PLAIN) for ends, way in links.items()):
+            for ends in links:
+                del left[ends]
+            found.append(Joined(table, list(links)))
     return found
 
 
-def _links(interfaces: Mapping[str, Interface], table: dict[str, Any], where: str) -> list[Ends]:
+def _links(interfaces: Mapping[str, Interface], table: dict[str, Any], where: str) -> dict[Ends, Way]:
     """What the connection comes to; nothing where these units cannot be connected so."""
     both_ways = "ports" in table
     first, second = table["ports"] if both_ways else (table["from"], table["to"])
     wiring = Wiring(interfaces, where)
     try:
-        wiring.connect(Connection(first, second, both_ways, True))
-    except WiringError:
-        return []
+        asked = Alteration.of(*(table.get(key) for key in ("frame", "scale", "offset")))
+        wiring.connect(Connection(first, second, both_ways, True, alteration=asked))
+        found = [(link, way_of(wiring.derived[link.source_unit], link, where)) for link in wiring.links]
+    except (WiringError, SspError):
+        return {}
     names = list(interfaces)
-    return [(f"{names[k.source_unit]}.{k.source}", f"{names[k.target_unit]}.{k.target}") for k in wiring.links]
+    return {
+        (f"{names[link.source_unit]}.{source}", f"{names[link.target_unit]}.{link.target}"): way for link, (source, way) in found
+    }
 
 
-def _candidates(interfaces: Mapping[str, Interface], there: Sequence[Ends]) -> list[dict[str, Any]]:
+def _candidates(interfaces: Mapping[str, Interface], there: Iterable[Ends]) -> list[dict[str, Any]]:
     """Every pair of ports between which something is connected."""
     pairs: dict[frozenset[str], list[str]] = {}
     for ends in there:

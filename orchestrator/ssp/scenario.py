@@ -11,10 +11,11 @@ from orchestrator.errors import SspError
 from orchestrator.fmi.description import read_interface
 from orchestrator.master.slave import Interface, stem
 from orchestrator.ssp.archive import Archive, every, first, opened
-from orchestrator.ssp.joins import Joined, joins
+from orchestrator.ssp.joins import Ends, Joined, joins
 from orchestrator.ssp.names import OSP_ANNOTATION, SCENARIO_ANNOTATION, tag
-from orchestrator.ssp.structure import Structure, Wire, flattened
+from orchestrator.ssp.structure import Node, Structure, Wire, flattened
 from orchestrator.ssp.values import Given, start_values
+from orchestrator.ssp.ways import Way, alteration
 
 Tree = dict[str, Any]
 
@@ -86,37 +87,41 @@ def _connections(
     """Joined ports where all their links are there, and what is left, vectors in one line."""
     units = {path: component.unit for path, component in structure.components.items()}
     by_unit = {units[path]: interface for path, interface in interfaces.items()}
-    left = {(f"{units[w.source[0]]}.{w.source[1]}", f"{units[w.target[0]]}.{w.target[1]}"): w for w in wires}
-    plain = [ends for ends, wire in left.items() if (wire.factor, wire.offset, wire.as_is) == (1.0, 0.0, False)]
-    made: list[Joined] = joins(by_unit, plain, archive.where, own)
+    left: dict[Ends, Way] = {}
+    for wire in wires:
+        ends = _label(units, wire.source), _label(units, wire.target)
+        if ends in left:
+            raise SspError(f"{archive.where}: {ends[0]} -> {ends[1]}: is connected twice; remove one connection")
+        left[ends] = wire.way
+    made: list[Joined] = joins(by_unit, left, archive.where, own)
     for joined in made:
         for ends in joined.ends:
-            left.pop(ends, None)
-    return [joined.table for joined in made] + list(_by_variable(archive, left, by_unit))
+            del left[ends]
+    return [joined.table for joined in made] + list(_by_variable(left, by_unit))
 
 
-def _by_variable(archive: Archive, left: Mapping[tuple[str, str], Wire], interfaces: Mapping[str, Interface]) -> Iterator[Tree]:
-    done: set[tuple[str, str]] = set()
-    for ends, wire in left.items():
+def _label(units: Mapping[str, str], node: Node) -> str:
+    return f"{units[node[0]]}.{node[1]}"
+
+
+def _by_variable(left: Mapping[Ends, Way], interfaces: Mapping[str, Interface]) -> Iterator[Tree]:
+    done: set[Ends] = set()
+    for ends, way in left.items():
         if ends in done:
             continue
-        if (wire.factor, wire.offset, wire.as_is) != (1.0, 0.0, False):
-            label = f"{archive.where}: {ends[0]} -> {ends[1]}"
-            raise SspError(f"{label}: has a linear transformation, which this master does not do; put it in a unit")
         vector = _whole_vector(ends, left, interfaces)
         done.update(vector or [ends])
         source, target = (_stem(end) for end in ends) if vector else ends
-        yield {"from": source, "to": target}
+        one, other = (interfaces[end.partition(".")[0]].variables.get(end.partition(".")[2]) for end in ends)
+        yield {"from": source, "to": target} | (alteration(way, one, other) if one and other else {})
 
 
-def _whole_vector(
-    ends: tuple[str, str], left: Mapping[tuple[str, str], Wire], interfaces: Mapping[str, Interface]
-) -> list[tuple[str, str]]:
-    """All pairs of elements, where every element of one vector goes to the same of the other."""
+def _whole_vector(ends: Ends, left: Mapping[Ends, Way], interfaces: Mapping[str, Interface]) -> list[Ends]:
+    """All pairs of elements, where every element of one vector goes to the same of the other in the same way."""
     (unit, _, source), (other, _, target) = (end.partition(".") for end in ends)
     given, taken = (interfaces[u].vectors.get(stem(name), []) for u, name in ((unit, source), (other, target)))
     pairs = [(f"{unit}.{one.name}", f"{other}.{two.name}") for one, two in zip(given, taken, strict=False)]
-    whole = len(given) == len(taken) > 1 and all(pair in left for pair in pairs) and ends in pairs
+    whole = len(given) == len(taken) > 1 and all(left.get(pair) == left[ends] for pair in pairs) and ends in pairs
     return pairs if whole else []
 
 

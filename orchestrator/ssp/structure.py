@@ -13,21 +13,11 @@ from lxml import etree
 from orchestrator.errors import SspError, nearest
 from orchestrator.ssp.archive import Archive, every, first
 from orchestrator.ssp.names import FMU_TYPE, tag
+from orchestrator.ssp.ways import PLAIN, Way
 
 Node = tuple[str, str]
 """Path of an element ("" the root system, "vehicle.leg1"), name of a connector."""
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_+\-]")
-
-
-@dataclass(frozen=True)
-class Edge:
-    """One ssd:Connection, in the direction in which it is followed."""
-
-    end: Node
-    factor: float
-    offset: float
-    as_is: bool
-    """No unit conversion on the way."""
 
 
 @dataclass(frozen=True)
@@ -42,13 +32,11 @@ class Component:
 
 @dataclass(frozen=True)
 class Wire:
-    """From an output of a component to an input of another: target = factor·source + offset."""
+    """From an output of a component, or a connector of a system, to an input of a component."""
 
     source: Node
     target: Node
-    factor: float = 1.0
-    offset: float = 0.0
-    as_is: bool = False
+    way: Way = PLAIN
 
 
 @dataclass
@@ -59,7 +47,8 @@ class Structure:
     """Connectors of each system by its path."""
     parameterised: list[tuple[str, Any]] = field(default_factory=list)
     """Path and element of what may have parameter bindings, the outermost last."""
-    edges: dict[Node, list[Edge]] = field(default_factory=dict)
+    edges: dict[Node, list[tuple[Node, Way]]] = field(default_factory=dict)
+    """Each ssd:Connection, from both of its ends."""
 
     def wires(self) -> list[Wire]:
         """Every output followed to the inputs it reaches."""
@@ -76,16 +65,15 @@ class Structure:
         front, seen = [Wire(source, source)], {source}
         while front:
             here = front.pop(0)
-            for edge in self.edges.get(here.target, ()):
-                if edge.end in seen:
+            for end, way in self.edges.get(here.target, ()):
+                if end in seen:
                     continue
-                seen.add(edge.end)
-                factor, offset = here.factor * edge.factor, here.offset * edge.factor + edge.offset
-                wire = Wire(source, edge.end, factor, offset, here.as_is or edge.as_is)
-                owner = self.components.get(edge.end[0])
+                seen.add(end)
+                wire = Wire(source, end, here.way.then(way))
+                owner = self.components.get(end[0])
                 if owner is None:
                     front.append(wire)
-                elif owner.connectors[edge.end[1]] in ("input", "parameter"):
+                elif owner.connectors[end[1]] in ("input", "parameter"):
                     yield wire
 
 
@@ -140,10 +128,10 @@ def _connection(archive: Archive, connection: Any, path: str, structure: Structu
     if "inout" in kinds or "calculatedParameter" in kinds:
         label = " -> ".join(".".join(node) for node in ends)
         raise SspError(f"{archive.where}: {label}: connects {' and '.join(kinds)}, this master connects outputs to inputs; remove it")
-    factor, offset = _transformation(archive, connection)
     as_is = connection.get("suppressUnitConversion", "false") in ("true", "1")
+    way = Way(*_transformation(archive, connection), as_is)
     for one, other in (ends, ends[::-1]):
-        structure.edges.setdefault(one, []).append(Edge(other, factor, offset, as_is))
+        structure.edges.setdefault(one, []).append((other, way))
 
 
 def _end(archive: Archive, connection: Any, side: str, path: str, structure: Structure) -> Node:

@@ -45,9 +45,3 @@ def stated(variable: Variable) -> bool:
     """Whether the variable's unit is one the file can define."""
     return bool(variable.unit) and variable.dimension is not None
 
-
-def converted(value: float, given: Dimension, wanted: Dimension) -> float:
-    """From one unit of a dimension to another; to the bit where both are the same."""
-    if given[8:] == wanted[8:]:
-        return value
-    return (value * given[8] + given[9] - wanted[9]) / wanted[8]

@@ -10,10 +10,12 @@ from lxml import etree
 
 from orchestrator.errors import SspError, nearest
 from orchestrator.master.slave import Interface, Variable
+from orchestrator.scenario.conversion import unit_conversion
 from orchestrator.ssp.archive import Archive, every, first
 from orchestrator.ssp.names import KINDS
 from orchestrator.ssp.structure import Structure, linear
-from orchestrator.ssp.units import Dimension, converted, units_of
+from orchestrator.ssp.units import Dimension, units_of
+from orchestrator.ssp.ways import PLAIN, Way
 
 Given = float | int | bool | str | list[Any]
 
@@ -24,9 +26,7 @@ class Parameter:
     value: Given
     unit: str = ""
     dimension: Dimension | None = None
-    factor: float = 1.0
-    offset: float = 0.0
-    as_is: bool = False
+    way: Way = PLAIN
 
 
 def start_values(archive: Archive, structure: Structure, interfaces: Mapping[str, Interface]) -> dict[str, dict[str, Given]]:
@@ -59,8 +59,7 @@ def _targets(structure: Structure, path: str, parameter: Parameter) -> Iterator[
         name = full.removeprefix(f"{system}.") if system else full
         if name in connectors and (not system or full.startswith(f"{system}.")):
             for wire in structure.taken_by((system, name)):
-                factor, offset = parameter.factor * wire.factor, parameter.offset * wire.factor + wire.offset
-                yield *wire.target, replace(parameter, factor=factor, offset=offset)
+                yield *wire.target, replace(parameter, way=parameter.way.then(wire.way))
 
 
 def _variable(archive: Archive, component: str, name: str, interface: Interface, shared: bool) -> Variable | None:
@@ -73,14 +72,17 @@ def _variable(archive: Archive, component: str, name: str, interface: Interface,
 
 
 def _in_unit(archive: Archive, what: str, parameter: Parameter, variable: Variable) -> Given:
+    given = Variable(parameter.name, unit=parameter.unit, dimension=parameter.dimension)
+    conversion = (1.0, 0.0) if parameter.way.as_is else unit_conversion(given, variable)
+    if conversion is None:
+        raise SspError(f"{archive.where}: {what}: is given in {parameter.unit}, expects {variable.unit}; give it in that unit")
+
     def one(value: Any) -> Any:
-        if isinstance(value, bool | str) or (isinstance(value, int) and (parameter.factor, parameter.offset) == (1.0, 0.0)):
+        if isinstance(value, bool | str):
             return value
-        if parameter.as_is or not parameter.unit or not variable.unit or parameter.unit == variable.unit:
-            return value if (parameter.factor, parameter.offset) == (1.0, 0.0) else parameter.factor * value + parameter.offset
-        if parameter.dimension is None or variable.dimension is None or parameter.dimension[:8] != variable.dimension[:8]:
-            raise SspError(f"{archive.where}: {what}: is given in {parameter.unit}, expects {variable.unit}; give it in that unit")
-        return converted(parameter.factor * value + parameter.offset, parameter.dimension, variable.dimension)
+        factor, offset, as_is = parameter.way
+        moved = value if (factor, offset) == (1.0, 0.0) else factor * value + offset      # whole numbers stay whole
+        return moved if as_is or conversion == (1.0, 0.0) else conversion[0] * moved + conversion[1]
 
     return [one(x) for x in parameter.value] if isinstance(parameter.value, list) else one(parameter.value)
 
@@ -102,8 +104,8 @@ def _parameters(archive: Archive, binding: Any, path: str) -> list[Parameter]:
     if mapping is None:
         return found
     return [
-        replace(parameter, name=target, factor=factor, offset=offset, as_is=as_is)
-        for parameter in found for source, target, factor, offset, as_is in mapping if source == parameter.name
+        replace(parameter, name=target, way=way)
+        for parameter in found for source, target, way in mapping if source == parameter.name
     ]  # fmt: skip
 
 
@@ -116,8 +118,8 @@ def _sets(archive: Archive, binding: Any, who: str) -> list[Any]:
     return every(binding, "ssd:ParameterValues", "ssv:ParameterSet")
 
 
-def _mapping(archive: Archive, element: Any, who: str) -> list[tuple[str, str, float, float, bool]] | None:
-    """Source, target, factor, offset, without unit conversion; None where names stand for themselves."""
+def _mapping(archive: Archive, element: Any, who: str) -> list[tuple[str, str, Way]] | None:
+    """Source, target and what is done to the value; None where names stand for themselves."""
     if element is None:
         return None
     source = element.get("source")
@@ -127,9 +129,8 @@ def _mapping(archive: Archive, element: Any, who: str) -> list[tuple[str, str, f
         for child in entry:
             if etree.QName(child).localname.endswith("MappingTransformation"):
                 raise SspError(f"{archive.where}: {who}: {entry.get('source')}: this reader knows linear mappings; write the value itself")
-        factor, offset = linear(first(entry, "ssc:LinearTransformation"))
         as_is = entry.get("suppressUnitConversion", "false") in ("true", "1")
-        entries.append((entry.get("source"), entry.get("target"), factor, offset, as_is))
+        entries.append((entry.get("source"), entry.get("target"), Way(*linear(first(entry, "ssc:LinearTransformation")), as_is)))
     return entries
 
 

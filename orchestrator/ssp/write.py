@@ -11,9 +11,11 @@ from lxml import etree
 
 from orchestrator.blueprint import Blueprint
 from orchestrator.master.slave import Interface, Kind, Value, Variable
+from orchestrator.master.system import Link
 from orchestrator.results.provenance import DISTRIBUTION
 from orchestrator.ssp.names import FMU_TYPE, NAMESPACES, OSP_ANNOTATION, SCENARIO_ANNOTATION, SCENARIO_NAMESPACE, tag
 from orchestrator.ssp.units import stated, write_units
+from orchestrator.ssp.ways import PLAIN, Way, way_of
 
 START = "start"
 """Name of every component's parameter set: hosts that choose one by name take them all with it."""
@@ -55,7 +57,7 @@ def text_of(root: Any) -> bytes:
 
 
 def _ends(blueprint: Blueprint, place: int) -> set[str]:
-    given = {link.source for link in blueprint.links if link.source_unit == place}
+    given = {_way(blueprint, link)[0] for link in blueprint.links if link.source_unit == place}
     return given | {link.target for link in blueprint.links if link.target_unit == place}
 
 
@@ -107,9 +109,19 @@ def _connections(system: Any, blueprint: Blueprint) -> None:
     names = list(blueprint.interfaces)
     parent = etree.SubElement(system, tag("ssd:Connections"))
     for link in blueprint.links:
-        ends = {"startElement": names[link.source_unit], "startConnector": link.source}
-        ends |= {"endElement": names[link.target_unit], "endConnector": link.target}
-        etree.SubElement(parent, tag("ssd:Connection"), ends)
+        source, way = _way(blueprint, link)
+        about = {"startElement": names[link.source_unit], "startConnector": source}
+        about |= {"endElement": names[link.target_unit], "endConnector": link.target}
+        about |= {"suppressUnitConversion": "true"} if way.as_is else {}
+        connection = etree.SubElement(parent, tag("ssd:Connection"), about)
+        if way != PLAIN:
+            etree.SubElement(connection, tag("ssc:LinearTransformation"), factor=repr(way.factor), offset=repr(way.offset))
+
+
+def _way(blueprint: Blueprint, link: Link) -> tuple[str, Way]:
+    names = list(blueprint.interfaces)
+    label = f"{blueprint.scenario.where}: {names[link.source_unit]} -> {names[link.target_unit]}.{link.target}"
+    return way_of(blueprint.derived[link.source_unit] if blueprint.derived else (), link, label)
 
 
 def _annotation(parent: Any, kind: str) -> Any:

@@ -1,14 +1,14 @@
 """A scenario written as an .ssp and run again."""
 
 import json
-import tomllib
 from pathlib import Path
 
 import pytest
-from checkpoint_runs import orchestrator
+from checkpoint_runs import orchestrator, run
 from fmi_samples import oscillator
 from lxml import etree
 from ssp_runs import columns, description, exported, packed, same_bits
+from ssp_samples import in_unit
 
 from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.errors import OrchestratorError
@@ -16,20 +16,21 @@ from orchestrator.ssp.archive import parsed, schema_fault
 
 ROOT = Path(__file__).resolve().parents[2]
 APOLLO = ROOT / "scenarios" / "apollo11_zupp.toml"
+DROP = ROOT / "scenarios" / "footpad_drop.toml"
 built = pytest.mark.skipif(not (ROOT / "build" / "fmus" / "GearLeg.fmu").exists(), reason="python build_fmus.py first")
 
 
 @built
-def test_a_landing_from_an_ssp_has_the_same_bits_and_the_same_report(tmp_path: Path) -> None:
+def test_a_landing_from_an_ssp_has_the_same_bits_and_starts_solved(tmp_path: Path) -> None:
     ssp = exported(APOLLO, tmp_path / "apollo.ssp")
-    whole = columns(APOLLO, tmp_path / "toml", "--stop-time", 0.1)
+    whole = columns(APOLLO, 0.1)
     assert max(whole["soil+Y.penetration"]) > 0.0             # a foot has touched
-    same_bits(whole, columns(ssp, tmp_path / "ssp", "--stop-time", 0.1))
-    assert (tmp_path / "ssp" / "comparison.md").read_text() == (tmp_path / "toml" / "comparison.md").read_text()
-    one, other = (tomllib.loads((tmp_path / folder / "scenario.toml").read_text()) for folder in ("toml", "ssp"))
+    same_bits(whole, columns(ssp, 0.1))
+    one, other = (draw_up(read_scenario(path), path).scenario.as_run() for path in (APOLLO, ssp))
     assert [one[key] for key in ("connections", "master", "start", "record")] == [
         other[key] for key in ("connections", "master", "start", "record")
     ]
+    assert Path(other["results"]["references"]).read_bytes() == (APOLLO.parent / "paper.toml").read_bytes()
     position = float(_given(ssp)["body", "position_start[1]"])
     assert position == whole["body.body.position[1]"][0]      # solved in the file, for hosts that cannot
     for i in (1, 2, 3, 4):                                    # a connected input starts at what feeds it
@@ -38,8 +39,8 @@ def test_a_landing_from_an_ssp_has_the_same_bits_and_the_same_report(tmp_path: P
 
 @built
 def test_a_changed_parameter_solves_the_start_condition_again(tmp_path: Path) -> None:
-    ssp, change = exported(APOLLO, tmp_path / "apollo.ssp"), ("--stop-time", 0.01, "--set", "body.pitch_start=0.05")
-    one, other = columns(APOLLO, tmp_path / "toml", *change), columns(ssp, tmp_path / "ssp", *change)
+    ssp, change = exported(APOLLO, tmp_path / "apollo.ssp"), ("body.pitch_start=0.05",)
+    one, other = columns(APOLLO, 0.01, change), columns(ssp, 0.01, change)
     assert min(other[f"soil{leg}.gap"][0] for leg in ("+Z", "+Y", "-Z", "-Y")) == pytest.approx(0.0, abs=1e-9)   # m
     assert other["body.body.position[1]"][0] == pytest.approx(one["body.body.position[1]"][0], abs=1e-9)         # m
 
@@ -70,10 +71,10 @@ def test_a_variant_stands_beside_the_default_and_runs_by_its_name(tmp_path: Path
     ssp = exported(scenario, tmp_path / "both.ssp", "--variant", f"heavy={heavy}")
     assert schema_fault(description(ssp, "heavy.ssd")) == ""
     (tmp_path / "over.toml").write_text('extends = "both.ssp#heavy.ssd"\n')
-    expected = columns(scenario, tmp_path / "1", "--set", "b.mass=9.0")
-    same_bits(expected, columns(ssp, tmp_path / "2", "--variant", "heavy"))
-    same_bits(expected, columns(tmp_path / "over.toml", tmp_path / "3"))
-    same_bits(columns(scenario, tmp_path / "4"), columns(ssp, tmp_path / "5"))
+    expected = columns(scenario, overrides=["b.mass=9.0"])
+    same_bits(expected, columns(ssp, variant="heavy"))
+    same_bits(expected, columns(tmp_path / "over.toml"))
+    same_bits(columns(scenario), columns(ssp))
     with pytest.raises(OrchestratorError, match='no variant "hevy"; did you mean "heavy"'):
         read_scenario(ssp, variant="hevy")
 
@@ -84,7 +85,7 @@ def test_a_connection_changed_in_the_file_is_changed_in_the_run(tmp_path: Path) 
     cut = next(c for c in root.iter("{*}Connection") if c.get("endElement") == "b" and c.get("endConnector") == "end.force")
     cut.getparent().remove(cut)
     packed(ssp, {"SystemStructure.ssd": etree.tostring(root)})
-    result = columns(ssp, tmp_path / "out")
+    result = columns(ssp)
     force, mass = -20.0, 2.0                                  # N: the spring's at the start, where the input stays; kg
     assert result["b.end.velocity"] == pytest.approx(force / mass * result["time"], rel=1e-9)
 
@@ -97,15 +98,53 @@ def test_a_system_without_our_annotation_finds_the_joined_ports_by_itself(tmp_pa
     packed(ssp, {"SystemStructure.ssd": etree.tostring(root)})
     plain = draw_up(read_scenario(ssp), ssp)
     assert [set(c.as_run()["ports"]) for c in plain.scenario.connections] == [{"spring.a", "a.end"}, {"spring.b", "b.end"}]
-    with_steps = ("--tolerance", 1e-6)
-    theirs, ours = columns(ssp, tmp_path / "1", *with_steps), columns(scenario, tmp_path / "2", *with_steps)
-    assert theirs["b.position"][-1] == pytest.approx(ours["b.position"][-1], abs=1e-5)     # m: other intervals, same tolerance
+    assert columns(ssp)["b.position"][-1] == pytest.approx(columns(scenario)["b.position"][-1], abs=1e-5)    # m: other intervals
+
+
+def test_a_scaled_and_converted_connection_is_written_with_its_factor_and_comes_back_to_the_same_bits(tmp_path: Path) -> None:
+    scenario = tmp_path / "converted.toml"
+    scenario.write_text(f"""
+stop_time = 0.05
+[units.one]
+fmu = "{in_unit(tmp_path, "m").as_posix()}"
+[units.two]
+fmu = "{in_unit(tmp_path, "mm").as_posix()}"
+[[connections]]
+from = "one.x"
+to = "two.u"
+scale = -0.3
+offset = 0.7
+""")
+    ssp = exported(scenario, tmp_path / "converted.ssp")
+    connection = next(description(ssp).iter("{*}Connection"))
+    assert connection.get("suppressUnitConversion") == "true"          # the conversion is in the factor: few hosts do it themselves
+    assert {name: float(value) for name, value in connection[0].attrib.items()} == {"factor": -300.0, "offset": 0.7}
+    whole = columns(scenario)
+    same_bits(whole, columns(ssp))
+    root = description(ssp)
+    for annotations in root.findall(".//{*}Annotations"):
+        annotations.getparent().remove(annotations)
+    packed(ssp, {"SystemStructure.ssd": etree.tostring(root)})
+    assert columns(ssp)["two.x"] == pytest.approx(whole["two.x"], rel=1e-12)
+
+
+@built
+def test_a_frame_is_refused_because_the_standard_has_no_words_for_it(tmp_path: Path) -> None:
+    turned = "frame = [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]]"
+    text = DROP.read_text("utf-8").replace('ports = ["soil.pad", "body.effect1"]', f'ports = ["soil.pad", "body.effect1"]\n{turned}')
+    (tmp_path / "turned.toml").write_text(f'fmus = "{(ROOT / "build" / "fmus").as_posix()}"\n{text}')
+    done = orchestrator("export", "turned.toml", "--ssp", "x.ssp", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == (
+        "error: turned.toml: soil -> body.effect1.force[1]: adds up pad.force[1], pad.force[2] (a frame), which SSP has no words for;"
+        " turn it in a unit\n"
+    )
 
 
 def test_a_run_says_which_file_it_was_of(tmp_path: Path) -> None:
     ssp = exported(oscillator(tmp_path), tmp_path / "system.ssp", "--output", "spring.stretch")
     assert "stretch" in {c.get("name") for c in description(ssp).iter("{*}Connector")}
-    columns(ssp, tmp_path / "out")
+    run(ssp, tmp_path / "out")
     inputs = json.loads((tmp_path / "out" / "inputs.json").read_text())
     assert inputs["scenario"] == "system.ssp"
     assert len(inputs["scenario_sha256"]) == 64
