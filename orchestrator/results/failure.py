@@ -2,7 +2,7 @@
 
 All is taken from recorded outputs and from the parameters the units were given, by name. An extreme between two recorded rows is known
 to the unit alone: `peak_stroke` keeps a primary's greatest stroke over the unit's own steps (the twin's: over the master's), every other
-extreme here is over the recorded rows. At 10 ms between rows a stroke that turns under 20 m/s2 is missed by at most 0.25 mm.
+extreme here is over the recorded rows, those of strokes, clearance and loads up to the one with the centre of mass beyond an edge. At 10 ms between rows a stroke that turns under 20 m/s2 is missed by at most 0.25 mm.
 """
 
 from collections.abc import Mapping
@@ -24,14 +24,34 @@ def failure(channels: Channels, table: ResultsTable, parameters: Parameters) -> 
     """The key `failure` of summary.json: measures with the margin left (negative: failed), and the list of those that failed."""
     pads = pad_positions(channels, table)
     motion = motion_of(channels, table.body)
-    strokes = {name: stroke(channels, table, parameters, name) for name in STROKES}
-    found = {
-        "tip_over": tip_over(channels, table, parameters, pads, motion),
-        **strokes,
-        "clearance": clearance(channels, table, parameters, motion),
-        "peak_loads": peak_loads(channels, table),
+    found = tipping(channels, table, parameters, pads, motion)
+    upright = channels if found is None else until(channels, found)
+    measures = {
+        "tip_over": None if found is None else tip_over(channels, table, found),
+        **{name: stroke(upright, table, parameters, name) for name in STROKES},
+        "clearance": clearance(upright, table, parameters, motion_of(upright, table.body)),
+        "peak_loads": peak_loads(upright, table),
     }
-    return {"failed": failed(found), **found}
+    channels.missing += [name for name in upright.missing if name not in channels.missing]
+    return {"failed": failed(measures), **measures}
+
+
+def tipping(
+    channels: Channels, table: ResultsTable, parameters: Parameters, pads: Array | None, motion: Motion | None
+) -> Edges | None:
+    """Angle and energy at every edge; None without positions or with less than three legs."""
+    if pads is None or motion is None or len(channels.times) == 0 or pads.shape[1] < 3:
+        return None
+    return edges(pads, motion, mass_properties(table.body, parameters))
+
+
+def until(channels: Channels, found: Edges) -> Channels:
+    """The rows up to the first with the centre of mass beyond an edge: what the struts do in a vehicle that falls on its side is no stroke."""
+    over = (found.angle < 0.0).any(axis=1)
+    if not over.any():
+        return channels
+    rows = int(np.argmax(over)) + 1
+    return Channels(channels.times[:rows], {name: column[:rows] for name, column in channels.columns.items()})
 
 
 def failed(found: Mapping[str, Any]) -> list[str]:
@@ -40,17 +60,12 @@ def failed(found: Mapping[str, Any]) -> list[str]:
     return tipped + [name for name in (*STROKES, "clearance") if ((found[name] or {}).get("margin_m") or 0.0) < 0.0]
 
 
-def tip_over(
-    channels: Channels, table: ResultsTable, parameters: Parameters, pads: Array | None, motion: Motion | None
-) -> dict[str, Any] | None:
+def tip_over(channels: Channels, table: ResultsTable, found: Edges) -> dict[str, Any]:
     """Least angle and energy margin over any edge since first contact, and those at the end; orchestrator.results.tip_over has the physics.
 
     `tipped`: at the end the centre of mass is beyond an edge, or turns too fast to stay inside. `decided`: it is beyond, or all its
     kinetic energy would not lift it over.
     """
-    if pads is None or motion is None or len(channels.times) == 0 or pads.shape[1] < 3:
-        return None
-    found = edges(pads, motion, mass_properties(table.body, parameters))
     since = touched(channels, table)
     row, edge = np.unravel_index(np.argmin(found.angle[since:]), found.angle[since:].shape)
     names = list(table.legs)
