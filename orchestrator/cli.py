@@ -16,6 +16,7 @@ from rich.console import Console
 from orchestrator.campaign.command import campaign
 from orchestrator.check.command import check
 from orchestrator.diagnosis.command import diagnose, distinguish
+from orchestrator.doghouse.command import doghouse
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
@@ -139,6 +140,7 @@ app.command()(diagnose)
 app.command()(distinguish)
 app.command()(export)
 app.command()(campaign)
+app.command()(doghouse)
 
 
 @app.command("list")

@@ -2,7 +2,8 @@
 
 All is taken from recorded outputs and from the parameters the units were given, by name. An extreme between two recorded rows is known
 to the unit alone: `peak_stroke` keeps a primary's greatest stroke over the unit's own steps (the twin's: over the master's), every other
-extreme here is over the recorded rows, those of strokes, clearance and loads up to the one with the centre of mass beyond an edge. At 10 ms between rows a stroke that turns under 20 m/s2 is missed by at most 0.25 mm.
+extreme here is over the recorded rows. At 10 ms between rows a stroke that turns under 20 m/s2 is missed by at most 0.25 mm.
+Strokes, clearance and loads count up to the row with the centre of mass beyond an edge: afterwards they are those of a fall.
 """
 
 from collections.abc import Mapping
@@ -46,8 +47,8 @@ def tipping(
 
 
 def until(channels: Channels, found: Edges) -> Channels:
-    """The rows up to the first with the centre of mass beyond an edge: what the struts do in a vehicle that falls on its side is no stroke."""
-    over = (found.angle < 0.0).any(axis=1)
+    """The rows up to the first with the centre of mass beyond an edge."""
+    over = found.angle.min(axis=1) < 0.0
     if not over.any():
         return channels
     rows = int(np.argmax(over)) + 1
@@ -61,36 +62,31 @@ def failed(found: Mapping[str, Any]) -> list[str]:
 
 
 def tip_over(channels: Channels, table: ResultsTable, found: Edges) -> dict[str, Any]:
-    """Least angle and energy margin over any edge since first contact, and those at the end; orchestrator.results.tip_over has the physics.
+    """Least angle and energy margin over any edge from first contact on; orchestrator.results.tip_over has the physics.
 
-    `tipped`: at the end the centre of mass is beyond an edge, or turns too fast to stay inside. `decided`: it is beyond, or all its
-    kinetic energy would not lift it over.
+    `tipped`: the centre of mass was beyond an edge, or turns too fast to stay inside at the end. `decided`: it was beyond, or all the
+    kinetic energy there is at the end would not lift it over. Where it went over, `least_*` are those of the first row beyond.
     """
     since = touched(channels, table)
-    row, edge = np.unravel_index(np.argmin(found.angle[since:]), found.angle[since:].shape)
+    over = found.angle.min(axis=1) < 0.0
+    rows = slice(since, max(since, int(np.argmax(over))) + 1 if over.any() else None)
+    row, edge = np.unravel_index(np.argmin(found.angle[rows]), found.angle[rows].shape)
     names = list(table.legs)
     first, second = found.pads[int(edge)]
-    tipped, decided = verdict(found)
-    least = None if found.energy is None else found.energy[since:]
+    energy = None if found.energy is None else found.energy[rows].min(axis=1)
+    end = None if found.energy is None else float(found.energy[-1].min())
+    secure = bool(over.any()) or (found.secure is not None and bool(found.secure[-1].min() > 0.0))
     return {
-        "tipped": tipped,
-        "decided": decided,
+        "tipped": bool(over.any()) or (end is not None and end < 0.0),
+        "decided": secure,
         "least_angle_deg": finite(np.degrees(found.angle[since + row, edge])),
         "at_s": finite(channels.times[since + row]),
         "edge": f"{names[first]} | {names[second]}",
         "final_angle_deg": finite(np.degrees(found.angle[-1].min())),
-        "least_energy_margin_J": None if least is None else finite(least.min()),
-        "least_energy_margin_at_s": None if least is None else finite(channels.times[since + int(np.argmin(least.min(axis=1)))]),
-        "final_energy_margin_J": None if found.energy is None else finite(found.energy[-1].min()),
+        "least_energy_margin_J": None if energy is None else finite(energy.min()),
+        "least_energy_margin_at_s": None if energy is None else finite(channels.times[since + int(np.argmin(energy))]),
+        "final_energy_margin_J": None if end is None else finite(end),
     }
-
-
-def verdict(found: Edges) -> tuple[bool, bool]:
-    """(tipped, decided) at the last instant."""
-    beyond = bool(found.angle[-1].min() < 0.0)
-    if found.energy is None or found.secure is None:
-        return beyond, beyond
-    return beyond or bool(found.energy[-1].min() < 0.0), beyond or bool(found.secure[-1].min() > 0.0)
 
 
 def stroke(channels: Channels, table: ResultsTable, parameters: Parameters, name: str) -> dict[str, Any] | None:

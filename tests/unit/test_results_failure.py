@@ -127,3 +127,16 @@ def test_a_person_reads_what_is_left():
     text = console.export_text()
     assert "secondary compression" in text
     assert "40.4 deg" in text
+
+
+def test_where_it_goes_over_the_first_row_beyond_counts_and_strokes_afterwards_do_not():
+    times = landing().times
+    outward = np.where(times < 1.0, 0.0, 8.0)  # m, all of a sudden far beyond the edges at +Y
+    late = np.where(times < 2.0, 0.0, 0.9)
+    changed = {"body.body.position[2]": outward, "leg-Z.primary.stroke": late, "leg-Z.primary.peak_stroke": late}
+    found = failure(standing(**changed), NAMES, parameters())
+    assert found["failed"] == ["tip_over"]
+    assert found["tip_over"]["at_s"] == pytest.approx(1.0, abs=0.003)
+    assert found["tip_over"]["decided"] is True
+    assert "+Y" in found["tip_over"]["edge"]
+    assert found["primary_stroke"]["peak_m"] < 0.1

@@ -1,0 +1,105 @@
+"""Who flies the landings of a Doghouse, and what is kept of them: a line a landing, so that an interrupted search goes on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.campaign.crew import Crew
+from orchestrator.campaign.inputs import resolved
+from orchestrator.campaign.landing import Base
+from orchestrator.doghouse.landing import Inputs, Margins, margins_of, overrides
+from orchestrator.doghouse.model import Flown
+from orchestrator.errors import ScenarioError
+
+Heard = Callable[[str, int, int], None]
+"""Called with the stage, how many of its landings are done, and of how many."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A scenario ready to be flown, and what the inputs are called in it."""
+
+    path: Path
+    base: Base
+    addresses: Mapping[str, Sequence[str]]
+    made_of: str
+    """Of what its landings follow from: text and FMUs."""
+
+    @classmethod
+    def read(cls, flown: Flown, folder: Path, where: str) -> Scenario:
+        path = folder / flown.scenario
+        if not path.is_file():
+            raise ScenarioError(f"{where}: no file {path}; give the name of a scenario beside it")
+        drawn = draw_up(read_scenario(path), path)
+        addresses = {name: resolved(address, drawn, f"{where}.set.{name}") for name, address in flown.names.model_dump().items()}
+        if len(addresses["velocity"]) != 3:
+            raise ScenarioError(f"{where}.set.velocity: has {len(addresses['velocity'])} elements, expects 3; name a vector with [*]")
+        base = Base.read(path)
+        units = sorted({interface.sha256 for interface in drawn.interfaces.values()})
+        return cls(path, base, addresses, hashlib.sha256("\n".join([base.text, *units]).encode()).hexdigest())
+
+    def overrides(self, inputs: Inputs) -> list[str]:
+        return overrides(inputs, self.addresses)
+
+
+class Logbook:
+    """Landings flown before, by scenario and overrides, in a file that only grows."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._known: dict[str, Margins] = {}
+        if path.is_file():
+            for line in path.read_text(encoding="utf-8").splitlines():
+                self._learn(line)
+
+    def get(self, key: str) -> Margins | None:
+        return self._known.get(key)
+
+    def put(self, key: str, margins: Margins) -> None:
+        self._known[key] = margins
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"key": key, **asdict(margins)}) + "\n")
+
+    def _learn(self, line: str) -> None:
+        """A line half written when the machine went down is passed over: that landing is flown again."""
+        try:
+            row = json.loads(line)
+            key = row.pop("key")
+            row["failed"] = tuple(row["failed"])
+            self._known[key] = Margins(**row)
+        except (ValueError, KeyError, TypeError):
+            return
+
+
+class Flying:
+    """Landings by a crew, those in the logbook taken from there."""
+
+    def __init__(self, crew: Crew, logbook: Logbook, heard: Heard | None = None) -> None:
+        self.crew, self.logbook, self.heard = crew, logbook, heard
+        self.asked = self.flown = 0
+        self.cpu_seconds = 0.0
+
+    def fly(self, scenario: Scenario, landings: Sequence[Inputs], stage: str) -> list[Margins]:
+        """Margins in the order of the landings."""
+        wanted = [(self._key(scenario, text), text) for text in map(scenario.overrides, landings)]
+        left = {key: text for key, text in wanted if self.logbook.get(key) is None}
+        self.asked += len(landings)
+        self._tell(stage, len(wanted) - len(left), len(wanted))
+        for done, (key, landing) in enumerate(self.crew.fly(scenario.base, left.items()), start=len(wanted) - len(left) + 1):
+            self.flown += 1
+            self.cpu_seconds += landing.cpu_seconds
+            self.logbook.put(key, margins_of(landing.outputs, landing.error))
+            self._tell(stage, done, len(wanted))
+        return [found for key, _ in wanted if (found := self.logbook.get(key)) is not None]
+
+    def _key(self, scenario: Scenario, text: Sequence[str]) -> str:
+        return hashlib.sha256("\n".join([scenario.made_of, *text]).encode()).hexdigest()[:32]
+
+    def _tell(self, stage: str, done: int, of: int) -> None:
+        if self.heard is not None:
+            self.heard(stage, done, of)
