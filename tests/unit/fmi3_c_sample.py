@@ -1,12 +1,12 @@
 """A small FMU of FMI 3.0 in C: every type, arrays, a structural parameter, early returns, states, and a request to end the run."""
 
-import subprocess
+import sys
 import tempfile
-import zipfile
 from functools import cache
 from pathlib import Path
 
-import fmpy
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "c_units"))
+from c_library import compile_library, pack
 
 SOURCE = r"""
 #include <math.h>
@@ -113,17 +113,6 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     return fmi3OK;
 }
 """
-_OTHERS = (
-    "SetUInt8 GetUInt8 SetInt16 GetInt16 SetUInt16 SetUInt32 GetUInt32 SetBinary GetBinary SetClock GetClock EnterEventMode"
-    " EnterConfigurationMode ExitConfigurationMode EnterStepMode EnterContinuousTimeMode CompletedIntegratorStep SetTime"
-    " SetContinuousStates GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates"
-    " GetNumberOfEventIndicators GetNumberOfContinuousStates GetNumberOfVariableDependencies GetVariableDependencies"
-    " GetDirectionalDerivative GetAdjointDerivative GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction"
-    " SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction EvaluateDiscreteStates UpdateDiscreteStates"
-    " GetOutputDerivatives ActivateModelPartition"
-)
-"""What the header asks for and nobody calls here."""
-
 _DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="NAME" instantiationToken="{sample-of-fmi-3}">
   <CoSimulation modelIdentifier="NAME" canHandleVariableCommunicationStepSize="true" mightReturnEarlyFromDoStep="true" hasEventMode="true"
@@ -171,17 +160,8 @@ def c_sample3(state: bool = True) -> Path:
     """The FMU, with or without states that can be kept."""
     name = "Sample3C" if state else "Sample3CStateless"
     folder = Path(tempfile.mkdtemp(prefix="c_fmu3_"))
-    headers = Path(fmpy.__file__).parent / "c-code"
-    others = "".join(f"int fmi3{it}(void) {{ return 3; }}\n" for it in _OTHERS.split())
-    others += "".join(f"void* fmi3Instantiate{it}(void) {{ return 0; }}\n" for it in ("ModelExchange", "ScheduledExecution"))
-    # In a file that has not seen the header's declarations.
-    (folder / "rest.c").write_text(others)
     (folder / "unit.c").write_text(SOURCE)
     library = folder / f"{name}.so"
-    sources = [str(folder / "unit.c"), str(folder / "rest.c")]
-    subprocess.run(["gcc", "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", "-o", str(library), *sources, "-lm"], check=True)
+    compile_library(library, [folder / "unit.c"], 3)
     able = 'canGetAndSetFMUState="true" canSerializeFMUState="true"' if state else ""
-    with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
-        archive.writestr("modelDescription.xml", _DESCRIPTION.replace("NAME", name).replace("CAPABILITIES", able))
-        archive.write(library, f"binaries/{fmpy.platform_tuple}/{name}{fmpy.sharedLibraryExtension}")
-    return folder / f"{name}.fmu"
+    return pack(folder / f"{name}.fmu", _DESCRIPTION.replace("NAME", name).replace("CAPABILITIES", able).encode(), library, 3)

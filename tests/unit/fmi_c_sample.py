@@ -1,12 +1,12 @@
 """A small FMU in C, for what pythonfmu cannot do: an early return with its time, a call that does not come back, fmi2Error."""
 
-import subprocess
+import sys
 import tempfile
-import zipfile
 from functools import cache
 from pathlib import Path
 
-import fmpy
+sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "c_units"))
+from c_library import compile_library, pack
 
 VARIABLES = ("u", "x", "wall", "hang_from", "error_from", "nan_from", "fatal_from")
 """x' = 1 + u. Discards at each multiple of `wall`, having stepped up to it; hangs, or fails, from a time on."""
@@ -120,14 +120,9 @@ def c_sample(state: bool = True) -> Path:
     name = "SampleC" if state else "SampleCStateless"
     folder = Path(tempfile.mkdtemp(prefix="c_fmu_"))
     (folder / "unit.c").write_text(SOURCE)
-    headers = Path(fmpy.__file__).parent / "c-code"
     library = folder / f"{name}.so"
-    command = ["gcc", "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", "-o", str(library), str(folder / "unit.c"), "-lm"]
-    subprocess.run(command, check=True)
+    compile_library(library, [folder / "unit.c"], 2)
     parameters = "".join(_PARAMETER.format(n, at) for at, n in enumerate(VARIABLES) if at > 1)
     able = 'canGetAndSetFMUstate="true" canSerializeFMUstate="true"' if state else ""
     description = _DESCRIPTION.replace("NAME", name).replace("PARAMETERS", parameters).replace("CAPABILITIES", able)
-    with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
-        archive.writestr("modelDescription.xml", description)
-        archive.write(library, f"binaries/{fmpy.platform}/{name}{fmpy.sharedLibraryExtension}")
-    return folder / f"{name}.fmu"
+    return pack(folder / f"{name}.fmu", description.encode(), library, 2)

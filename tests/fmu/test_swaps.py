@@ -1,0 +1,127 @@
+"""Each kind of unit replaced once by a foreign one, and landed: guidance in C of FMI 2.0 and 3.0, a soil in C without rollback,
+a leg of another version beside ours.
+"""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hosted import PACKAGE, package_with, packed_from
+
+from orchestrator.master.result import RunResult
+from orchestrator.simulation import run_scenario
+
+ROOT = Path(__file__).resolve().parents[2]
+LEGS = ("+Z", "+Y", "-Z", "-Y")
+Run = Callable[..., RunResult]
+
+
+@pytest.fixture(scope="module")
+def run(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """`run(scenario, *overrides, **changes)`: a scenario with the units in C beside ours, each built once."""
+    build = ROOT / "examples" / "c_units" / "build.py"
+    done = subprocess.run([sys.executable, str(build)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    ours, made = str(fmus["GearLeg"].parent), dict[str, RunResult]()
+
+    def result(scenario: str, *overrides: str, **changes: Any) -> RunResult:
+        key = repr((scenario, overrides, changes))
+        if key not in made:
+            made[key] = run_scenario(ROOT / "scenarios" / f"{scenario}.toml", overrides, {"fmus": ours} | changes)
+        return made[key]
+
+    return result
+
+
+def touchdown(result: RunResult) -> int:
+    """The first row in which a pad touches."""
+    touching = np.max([result.columns[f"soil{leg}.contact"] for leg in LEGS], axis=0)
+    return int(np.argmax(touching > 0.0))
+
+
+def record_of(result: RunResult, unit: str) -> Any:
+    return {record.name: record for record in result.unit_records}[unit]
+
+
+CONTROLLERS = [("gnc2", "2.0"), ("gnc3", "3.0")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("overlay", "version"), CONTROLLERS)
+def test_a_controller_in_c_holds_descent_rate_and_attitude_cuts_the_engine_and_lands(run: Run, overlay: str, version: str) -> None:
+    """Tolerances: 0.05 m/s is what one sample of full acceleration error makes (0.3 m/s over 0.5 s, by 0.05 s, twice); the jets' deadband
+    of 0.005 rad at up to 0.5 deg/s of limit cycle gives 0.5 deg; cut-off takes the rest of a sample, an interval and one sample to fall.
+    """
+    result = run(f"apollo11_descent_{overlay}")
+    assert result.trusted, result.message
+    guidance = record_of(result, "guidance")
+    assert (guidance.fmi_version, guidance.stepped, guidance.steps) == (version, "once per accepted step", result.accepted)
+    contact, times = touchdown(result), result.times
+    held = (times > 1.0) & (times < times[contact])
+    assert np.abs(result.columns["body.body.velocity[1]"][held] + 0.9).max() < 0.05
+    for axis, command in (("yaw", 0.263370), ("pitch", 0.0), ("roll", 0.0)):
+        assert np.degrees(np.abs(result.columns[f"body.attitude.{axis}"][held] - command).max()) < 0.5
+    thrust = result.columns["guidance.engine.thrust"]
+    falling = times[contact:][thrust[contact:] < thrust[contact] - 1.0]
+    assert falling[0] - times[contact] < 0.11
+    assert not thrust[times > falling[0] + 0.5].any()
+    assert np.abs([result.columns[f"body.body.velocity[{i}]"][-1] for i in (1, 2, 3)]).max() < 1e-3
+    assert all(result.columns[f"soil{leg}.contact"][-1] for leg in LEGS)
+
+
+@pytest.mark.slow
+def test_the_controller_does_the_same_to_the_bit_in_both_versions_of_fmi(run: Run) -> None:
+    two, three = (run(f"apollo11_descent_{overlay}") for overlay, _ in CONTROLLERS)
+    assert two.columns.keys() == three.columns.keys()
+    assert all((column == three.columns[name]).all() for name, column in two.columns.items())
+
+
+@pytest.mark.slow
+def test_our_guidance_lands_from_the_same_descent_but_tilts(run: Run) -> None:
+    result = run("apollo11_descent")
+    assert result.trusted, result.message
+    assert np.degrees(abs(result.columns["body.attitude.roll"][touchdown(result)])) > 2.0
+
+
+@pytest.mark.slow
+def test_a_soil_in_c_without_rollback_lands_much_as_ours_without_plowing(run: Run) -> None:
+    """Both are rate-independent with friction; one point a pad against five. Tolerances, as measured with a margin of a half: the rim
+    reaches the slope before the centre does, which moves depths by 3.5 mm and strokes by 6 mm.
+    """
+    foreign = run("apollo11_soil_c")
+    ours = run("apollo11_zupp", "soil*.law=2", "soil*.plowing=0", stop_time=1.5)
+    assert foreign.trusted, foreign.message
+    assert record_of(foreign, "soil+Z").stepped == "once per accepted step"
+    assert foreign.rejected == 0
+    for leg in LEGS:
+        for name, tolerance in ((f"soil{leg}.penetration", 5e-3), (f"leg{leg}.primary.stroke", 9e-3), (f"leg{leg}.left.stroke", 9e-3)):
+            assert foreign.columns[name][-1] == pytest.approx(ours.columns[name][-1], abs=tolerance), name
+
+
+@pytest.mark.slow
+def test_a_soil_without_rollback_at_too_long_intervals_is_stopped_with_a_line(run: Run) -> None:
+    result = run("apollo11_soil_c", master={"max_interval": 1e-3})
+    assert not result.complete
+    assert "explicit coupling is beyond its stability limit" in result.message
+    assert "\n" not in result.message
+
+
+@pytest.mark.slow
+def test_a_leg_of_another_version_stands_beside_ours(run: Run, tmp_path: Path) -> None:
+    """The other version's struts crush at twice the load, by its code: its own stroke shrinks, and ours do not run its code."""
+    source = (PACKAGE / "units" / "gear_leg.py").read_text()
+    stiff = source.replace('("primary_load", (20017.0, 42358.0)', '("primary_load", (40034.0, 84716.0)')
+    assert stiff != source
+    other = packed_from(package_with(tmp_path, gear_leg=stiff), "gear_leg")
+    changed = {"units": {"leg-Y": {"fmu": str(other), "parameters": {"azimuth": -np.pi / 2}}}}
+    plain, mixed = run("apollo11_zupp", stop_time=1.0), run("apollo11_zupp", stop_time=1.0, **changed)
+    assert mixed.trusted, mixed.message
+    assert record_of(mixed, "leg-Y").sha256 != record_of(mixed, "leg+Y").sha256
+    stroke = {leg: (mixed.columns[f"leg{leg}.primary.stroke"][-1], plain.columns[f"leg{leg}.primary.stroke"][-1]) for leg in LEGS}
+    assert stroke["-Y"][0] < 0.3 * stroke["-Y"][1]
+    assert stroke["-Z"][0] == pytest.approx(stroke["-Z"][1], rel=0.5)
+    assert stroke["-Z"][0] > 0.01
