@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from .compiled import jit
 from .soil import UNLATCHED, Soil, friction_bend, friction_scale, latched, normal_force, tangential_force
-from .surface import Surface, depth_at, normal_at
+from .surface import Surface, depth_at, laid_down, normal_at
 from .tangent_term import tangent_term
+from .turning import Hold, with_turning
 from .vectors import (
     ZERO,
     Matrix,
@@ -98,14 +99,18 @@ def tangential(normal: Vector, a: Vector) -> Vector:
 
 
 @jit
-def slide_at(memory: Array, i: int, place: Vector, depth: float, normal: Vector) -> Vector:
-    """Slide of point i (m) once it has moved to `place`: only the part of the way made in the soil counts."""
+def slide_at(surface: Surface, memory: Array, i: int, place: Vector, depth: float, normal: Vector) -> Vector:
+    """Slide of point i (m) once it has moved to `place`: only the part of the way made in the soil counts.
+
+    Over a relief the slide made so far is laid into the tangent plane of the new place.
+    """
+    so_far = laid_down(surface.relief, normal, (memory[i, SLIDE], memory[i, SLIDE + 1], memory[i, SLIDE + 2]))
     if depth <= 0.0:
-        return (memory[i, SLIDE], memory[i, SLIDE + 1], memory[i, SLIDE + 2])
+        return so_far
     before = memory[i, DEPTH]
     share = 1.0 if before > 0.0 else depth / (depth - before)
     moved = sub(place, (memory[i, PLACE], memory[i, PLACE + 1], memory[i, PLACE + 2]))
-    return axpy(share, tangential(normal, moved), (memory[i, SLIDE], memory[i, SLIDE + 1], memory[i, SLIDE + 2]))
+    return axpy(share, tangential(normal, moved), so_far)
 
 
 @jit
@@ -124,7 +129,7 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
         velocity = add(motion.velocity, cross(motion.rate, arm))
         push = normal_force(soil, depth, -dot(normal, velocity), memory[i, DATUM])
         slip = tangential(normal, velocity)
-        slide = slide_at(memory, i, place, depth, normal)
+        slide = slide_at(surface, memory, i, place, depth, normal)
         grip = max(push.force, 0.0)  # soil that pulls gives no friction
         f = axpy(push.force, normal, tangential_force(soil, grip, slip, slide))
 
@@ -135,6 +140,8 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
         k_i = plus(times(push.stiffness, outer(along, normal)), times(soil.plowing, plane))
         turn = times(friction_bend(soil, speed, k), outer(slip, slip))
         c_i = plus(times(push.damping, outer(along, normal)), times(grip * k, plus(plane, turn)))
+        hold = Hold(push.force, push.stiffness, push.damping, along, times(grip * k, plus(identity(1.0), turn)))
+        k_i = with_turning(k_i, surface, surface.relief, place, velocity, hold)
         if soil.effects.tangent_term.coefficient != 0.0:
             term = tangent_term(soil.effects.tangent_term, depth, slip, slide, normal, plane)
             f, k_i, c_i = add(f, term.force), plus(k_i, term.stiffness), plus(c_i, term.damping)
@@ -167,7 +174,7 @@ def remember(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memo
         place = add(motion.position, arm)
         depth = depth_at(surface, place)
         normal = normal_at(surface, place)
-        slide = slide_at(memory, i, place, depth, normal)
+        slide = slide_at(surface, memory, i, place, depth, normal)
         rate = -dot(normal, add(motion.velocity, cross(motion.rate, arm)))
         memory[i, DATUM] = latched(soil, depth, rate, memory[i, DATUM])
         for j in range(3):

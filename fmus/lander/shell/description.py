@@ -111,8 +111,10 @@ def scalar_variable(scalar: Scalar) -> Element:
 
 
 def type_attributes(scalar: Scalar) -> dict[str, str]:
-    """Attributes of Real, Integer or Boolean; numbers are written so that they read back to the last bit."""
+    """Attributes of Real, Integer, Boolean or String; numbers are written so that they read back to the last bit."""
     record, attributes = scalar.record, dict[str, str]()
+    if record.kind == "String":
+        return {"start": ""}
     if record.kind == "Real":
         attributes["unit"] = unit_name(scalar)
     if record.kind != "Boolean":

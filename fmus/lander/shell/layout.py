@@ -68,7 +68,7 @@ class Layout:
         key = tuple(references)
         found = self.accesses.get(key)
         if found is None:
-            unknown = [vr for vr in key if not (0 <= vr < len(self.scalars)) or self.scalars[vr].record.causality == "state"]
+            unknown = [vr for vr in key if not self.is_number(vr)]
             if unknown:
                 raise IndexError(f"value reference {unknown[0]} is unknown")
             if len(self.accesses) >= MOST_ACCESSES:
@@ -77,6 +77,17 @@ class Layout:
             where = slice(key[0], key[0] + len(key)) if run else np.array(key, dtype=np.intp)
             found = self.accesses[key] = (where, all(self.scalars[vr].record.causality == "input" for vr in key))
         return found
+
+    def is_number(self, reference: int) -> bool:
+        """Whether a value reference is that of a visible Real, Integer or Boolean."""
+        if not 0 <= reference < len(self.scalars):
+            return False
+        record = self.scalars[reference].record
+        return record.causality != "state" and record.kind != "String"
+
+    def is_text(self, reference: int) -> bool:
+        """Whether a value reference is that of a String parameter."""
+        return 0 <= reference < len(self.scalars) and self.scalars[reference].record.kind == "String"
 
     def complaint(self, memory: Floats, slot: int) -> str:
         """What is wrong with the value in a slot: `pad.force[1] is nan N, expects a finite number`."""

@@ -23,7 +23,7 @@ class Record:
     unit: str
     description: str
     causality: str  # parameter, input, output, local; state: hidden, saved with the FMU state
-    kind: str = "Real"  # Real, Integer, Boolean
+    kind: str = "Real"  # Real, Integer, Boolean, String
     minimum: float | None = None
     maximum: float | None = None
     nominal: float | None = None
@@ -79,6 +79,11 @@ def parameter(
     return record(
         "parameter", name, start, unit, description, minimum=minimum, maximum=maximum, nominal=nominal, kind=kind_of(integer, boolean)
     )
+
+
+def text(name: str, description: str) -> Record:
+    """A String parameter, empty unless set; it keeps a place in the memory for its reference alone, and is not in the state."""
+    return record("parameter", name, 0.0, "", description, kind="String")
 
 
 def input_(

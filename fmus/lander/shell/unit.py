@@ -61,6 +61,7 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
         self.memory: Floats = self.layout.template.copy()
         self.before: Floats = self.memory.copy()
         self.views: dict[str, Floats] = {}
+        self.texts: dict[int, str] = {}  # String parameters by slot: constants of the instance, not in its state
         self.message = ""
         self.prepared: object = None
         self.stepping = False
@@ -100,6 +101,10 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
     def value(self, name: str) -> float:
         """A scalar variable as a Python float."""
         return float(self[name][0])
+
+    def text(self, name: str) -> str:
+        """A String parameter."""
+        return self.texts.get(self.layout.slices[name].start, "")
 
     def span(self, first: str, last: str) -> Floats:
         """A view of all that was declared from the first to the last of two variables, companions of the last not included."""
@@ -196,7 +201,7 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
         return [value != 0.0 for value in self.get_real(vrs)]
 
     def get_string(self, vrs: list[int]) -> list[str]:
-        return [self.message] * len(vrs)
+        return [self.texts.get(vr, "") if self.layout.is_text(vr) else self.message for vr in vrs]
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         try:
@@ -219,7 +224,14 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
         self.set_real(vrs, [1.0 if value else 0.0 for value in values])
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
-        self.report("message is written by the unit alone", Fmi2Status.warning)
+        if not all(self.layout.is_text(vr) for vr in vrs):
+            self.report("message is written by the unit alone", Fmi2Status.warning)
+        elif self.stepping:
+            name = self.layout.scalars[vrs[0]].name
+            self.report(f"{name} is fixed after initialisation: none of this call's values is taken", Fmi2Status.warning)
+        else:
+            self.texts.update(zip(vrs, values, strict=True))
+            self.memory[STALE] = 1.0
 
     # What FMI calls: states.
 

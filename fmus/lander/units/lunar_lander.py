@@ -13,11 +13,12 @@ from ..laws.rigid_body import Body, BodyState, inertia_matrix
 from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Engine, Flight, Vehicle
 from ..laws.twin_effects import Effects, Tail, guided
 from ..laws.twin_exchange import LEG_REPORT, fly_and_show, show
-from ..laws.twin_stepping import Ride, Settings, push_at_start, start_accelerations, start_flight
+from ..laws.twin_stepping import Ride, Settings, pad_motion, push_at_start, start_accelerations, start_flight
 from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation
 from ..shell import Unit, UnitError, input_, output, parameter, state
 from ..shell.records import Record
 from . import (
+    _terrain,
     body_term,
     gear_leg,
     guidance_control,
@@ -69,6 +70,7 @@ def leg_outputs(k: int) -> tuple[Record, ...]:
     )
 
 
+NOT_A_SOILS = ("footpad_radius", "footpad_height", "longest_substep", *(record.name for record in _terrain.TERRAIN))
 ENGINE = ("engine.force", "engine.force_added", "engine.torque", "engine.torque_added")
 
 
@@ -82,7 +84,7 @@ class LunarLander(Unit):
     Inside are also, by default without effect: the engine of GuidanceControl (`guidance.*`), which acts from the twin's own first contact,
     and ThrustGroundEffect, PropellantSlosh, ReactionControl and BodyTerm (`plume.*`, `slosh.*`, `rcs.*`, `body_term.*`). The port `engine`
     adds to them; thrust that others follow is that inside plus the port's force along X.
-    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg). Parameters are those of VehicleBody,
+    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg), and all one relief (`terrain.*`). Parameters are those of VehicleBody,
     GearLeg and RegolithContact.
     """
 
@@ -95,8 +97,9 @@ class LunarLander(Unit):
         parameter("azimuth", (0.0, 0.5 * pi, pi, -0.5 * pi), "rad", "of legs 1 to 4 about B's x axis, from +Z to +Y"),
         *(
             for_each_soil(record)
-            for record in parameters_of(regolith_contact.RegolithContact.variables, ("footpad_radius", "footpad_height", "longest_substep"))
+            for record in parameters_of(regolith_contact.RegolithContact.variables, NOT_A_SOILS)
         ),
+        *_terrain.TERRAIN,
         *named("guidance", guidance_control.GuidanceControl),
         *named("plume", thrust_ground_effect.ThrustGroundEffect),
         *named("slosh", propellant_slosh.PropellantSlosh, "gravity"),
@@ -150,7 +153,8 @@ class LunarLander(Unit):
         body = Body(self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity"))
         legs = tuple(gear_leg.leg_of(self, azimuth, self.value("mass")) for azimuth in self["azimuth"].tolist())
         ground = [regolith_contact.soil_of(self, "soil.", k) for k in range(LEGS)]
-        soils, surfaces = tuple(soil for soil, _ in ground), tuple(surface for _, surface in ground)
+        relief = _terrain.relief_of(self)
+        soils, surfaces = tuple(soil for soil, _ in ground), tuple(plane._replace(relief=relief) for _, plane in ground)
         pad = Footpad(self.value("footpad_radius"), self.value("footpad_height"))
         self.vehicle = Vehicle(body, legs, soils, surfaces, pad)
         self.flight = Flight(
@@ -178,6 +182,8 @@ class LunarLander(Unit):
         attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
         velocity = apply(rotation(attitude), triple(self["velocity_start"]))
         start_flight(self.vehicle, BodyState(triple(self["position_start"]), attitude, velocity, triple(self["rates_start"])), self.flight)
+        _terrain.note_map(self)
+        self.refuse_gaps(self.value("terrain.reach"))
         for k in range(LEGS):
             regolith_contact.refuse_deep(deepest(self.flight.memory[k]), f"pad {k + 1}")
         engine = push_at_start(self.effects, self.engine(), self.flight, self.start_time)
@@ -189,10 +195,18 @@ class LunarLander(Unit):
         settings = self.settings._replace(first=self.value("next_step"))
         done = fly_and_show(self.vehicle, self.effects, self.engine(), settings, self.ride, time, step, *self.outputs)
         if not done.ok:
+            self.refuse_gaps(self.vehicle.pad.radius)
             raise UnitError(f"the equations did not converge over a step of {done.next_step:.3g} s; a larger tolerance may do")
         self["next_step"] = done.next_step
         self["steps"] += done.steps
         self["rejected"] += done.rejected
+
+
+    def refuse_gaps(self, reach: float) -> None:
+        """UnitError where the height map is not whole within `reach` (m) of any pad."""
+        for k in range(LEGS):
+            _, y, z = pad_motion(self.flight, k).position
+            _terrain.refuse_gaps(self.vehicle.surfaces[k], y, z, reach, f"pad {k + 1}")
 
 
 def effects_of(unit: Unit) -> Effects:

@@ -10,6 +10,7 @@ from ..laws.soil_exchange import advance_soil, start_soil
 from ..laws.surface import Surface, inclined_plane
 from ..laws.tangent_term import TangentTerm
 from ..shell import Unit, UnitError, input_, output, parameter, state
+from ._terrain import TERRAIN, note_map, refuse_gaps, relief_of
 
 DEEP = 0.05  # m: a pad that starts deeper than this is a mistake of the scenario, not a landing
 
@@ -39,7 +40,9 @@ EFFECTS = (  # beyond the paper (decision 9); null unless set
 
 
 class RegolithContact(Unit):
-    """Reaction of an inclined plane of regolith on a footpad through five points, and the pad's motion against it.
+    """Reaction of regolith on a footpad through five points, and the pad's motion against it.
+
+    The surface is an inclined plane, with a height map, craters and boulders on it where `terrain.*` says so (docs/terrain.md).
 
     law 1  the paper's: F_n = w_b w_r (K_n δ^p + w_d C_n δ̇), eqs. 5 to 9. It needs a residual sink rate: a resting pad creeps by design at
            about 0.05 mm/s (below 0.1 mm/s), and a rebound is free of force.
@@ -71,6 +74,7 @@ class RegolithContact(Unit):
         parameter("ground_slope", 0.0, "rad", "of the plane; at azimuth 0 it rises toward +Z of L", minimum=-1.2, maximum=1.2),
         parameter("ground_azimuth", 0.0, "rad", "of the slope about L's x axis", minimum=-7.0, maximum=7.0),
         parameter("ground_origin", (0.0, 0.0, 0.0), "m", "a point of the plane, frame L"),
+        *TERRAIN,
         parameter("footpad_radius", 0.47, "m", "of the circle of rim points", minimum=1e-3),
         parameter("footpad_height", 0.10, "m", "base to ball joint (Table 2)", minimum=0.0),
         parameter("longest_substep", 5e-4, "s", "of the integrator inside", minimum=1e-7),
@@ -114,7 +118,8 @@ class RegolithContact(Unit):
         return {"pad.position": (0.105 - 0.4 * time, 0.2 * time, 0.0), "pad.velocity": (-0.4, 0.2, 0.0)}
 
     def prepare(self) -> None:
-        self.soil, self.surface = soil_of(self)
+        self.soil, plane = soil_of(self)
+        self.surface = plane._replace(relief=relief_of(self))
         self.pad = Footpad(self.value("footpad_radius"), self.value("footpad_height"))
         self.port = self.span("pad.position", "pad.angular_velocity")
         self.outputs = (
@@ -128,6 +133,8 @@ class RegolithContact(Unit):
         self.shift = self.span("pad.mismatch_velocity", "pad.mismatch_angular_velocity")
 
     def initialise(self) -> None:
+        note_map(self)
+        self.refuse_gaps(self.value("terrain.reach"))
         depth = start_soil(self.soil, self.surface, self.pad, self.port, *self.outputs)
         refuse_deep(depth, "the pad")
         self.feel(self.start_time)
@@ -137,11 +144,17 @@ class RegolithContact(Unit):
             self.soil, self.surface, self.pad, self.value("longest_substep"), step, self.port, self.model, self.shift, *self.outputs
         )
         if not done:
+            self.refuse_gaps(self.pad.radius)
             raise UnitError(
                 f"the contact's equations did not converge over {step:g} s at a sink depth of {-self.value('gap'):.4g} m; "
                 "a shorter interval may do"
             )
         self.feel(time + max(touch, 0.0))
+
+    def refuse_gaps(self, reach: float) -> None:
+        """UnitError where the height map is not whole within `reach` (m) of the pad."""
+        _, y, z = self["pad.position"].tolist()
+        refuse_gaps(self.surface, y, z, reach, "the pad")
 
     def feel(self, time: float) -> None:
         """Contact signal and the time of the first contact."""
@@ -152,7 +165,7 @@ class RegolithContact(Unit):
 
 
 def soil_of(unit: Unit, prefix: str = "", element: int = 0) -> tuple[Soil, Surface]:
-    """Soil of one contact point, and the surface, from the given element of a unit's parameters (names with `prefix`)."""
+    """Soil of one contact point, and the plane of its surface, from the given element of a unit's parameters (names with `prefix`)."""
     share = 1.0 / POINTS
 
     def of(name: str) -> float:
