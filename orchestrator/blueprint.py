@@ -18,6 +18,7 @@ from orchestrator.scenario.parameters import start_values
 from orchestrator.scenario.read import SSP, Tree, check_table, merge, read_table
 from orchestrator.scenario.record import DISCRETE, matching_outputs
 from orchestrator.scenario.wiring import Wiring
+from orchestrator.terrain.hand_over import terrain_values
 
 
 @dataclass
@@ -59,7 +60,10 @@ def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
     for unit in scenario.units:
         fmu = find_fmu(unit.fmu, folder, f"{scenario.where}: units.{unit.name}")
         interfaces[unit.name] = read[fmu] = read.get(fmu) or read_interface(fmu)
-    values = [start_values(f"{scenario.where}: {u.name}", interfaces[u.name], u.parameters) for u in scenario.units]
+    ground = terrain_values(scenario.table.terrain, interfaces, scenario.where)
+    values = [
+        ground.get(u.name, {}) | start_values(f"{scenario.where}: {u.name}", interfaces[u.name], u.parameters) for u in scenario.units
+    ]
     wiring = Wiring(interfaces, scenario.where, scenario.table.master.slopes)
     for connection in scenario.connections:
         wiring.connect(connection)

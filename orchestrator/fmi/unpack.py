@@ -21,7 +21,7 @@ def content_hash(path: Path) -> str:
 
 def unpack(path: Path, sha256: str) -> Path:
     """Folder that holds the unpacked FMU."""
-    folder = _root() / sha256[:24]
+    folder = private_folder() / sha256[:24]
     if folder.is_dir():
         return folder
     with tempfile.TemporaryDirectory(dir=folder.parent) as scratch:
@@ -39,7 +39,7 @@ def unpack(path: Path, sha256: str) -> Path:
     return folder
 
 
-def _root() -> Path:
+def private_folder() -> Path:
     """A private folder whose path holds plain ASCII only: some runtimes crash on `#`, `+`, `%` or anything beyond ASCII."""
     owner = str(os.getuid()) if hasattr(os, "getuid") else "user"
     for base in (Path(tempfile.gettempdir()), Path("/var/tmp"), Path("/tmp")):

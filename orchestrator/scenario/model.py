@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from orchestrator.master.settings import MasterSettings
+from orchestrator.terrain.table import BoulderTable, CraterTable, TerrainTable
 
 Scalar = bool | int | float | str
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -115,6 +116,7 @@ class ScenarioTable(Table):
     each: dict[str, list[str]] = {}
     units: Annotated[dict[str, UnitTable], Field(min_length=1)]
     connections: list[ConnectionTable] = []
+    terrain: TerrainTable | None = None
     start: StartTable | None = None
     master: MasterTable = MasterTable()
     record: RecordTable = RecordTable()
@@ -131,12 +133,16 @@ def _orthogonal(rows: list[list[float]]) -> bool:
 
 def known_keys(path: tuple[int | str, ...]) -> list[str]:
     """Keys allowed in the table at this path of a scenario."""
-    tables: dict[str, type[Table]] = {"master": MasterTable, "record": RecordTable, "start": StartTable}
+    tables: dict[str, type[BaseModel]] = {"terrain": TerrainTable, "master": MasterTable, "record": RecordTable, "start": StartTable}
     match path:
         case ():
             return [*ScenarioTable.model_fields, "extends", "disconnect"]
         case ("units", _):
             return list(UnitTable.model_fields)
+        case ("terrain", "craters", _):
+            return list(CraterTable.model_fields)
+        case ("terrain", "boulders", _):
+            return list(BoulderTable.model_fields)
         case ("connections", _):
             return ["ports", "from", "to", *(key for key in ConnectionTable.model_fields if key not in ("ports", "source", "target"))]
         case (str(name),) if name in tables:

@@ -135,6 +135,9 @@ def _anchor_paths(tree: Tree, folder: Path) -> None:
     """Paths are relative to the file that states them, also when another folder's file extends it."""
     if isinstance(tree.get("fmus"), str):
         tree["fmus"] = str((folder / tree["fmus"]).resolve())
+    terrain = tree.get("terrain")
+    if isinstance(terrain, dict) and isinstance(terrain.get("file"), str):
+        terrain["file"] = str((folder / terrain["file"]).resolve())
     units = tree.get("units")
     for unit in units.values() if isinstance(units, dict) else ():
         if isinstance(unit, dict) and isinstance(unit.get("fmu"), str) and is_path(unit["fmu"]):
