@@ -6,7 +6,7 @@ import re
 
 from orchestrator.diagnosis.addresses import Addresses, Slot
 from orchestrator.diagnosis.places import LEGS, PLACES, TWIN
-from orchestrator.master.slave import Interface
+from orchestrator.master.slave import Interface, Kind
 from orchestrator.scenario.expand import Connection
 
 Parameters = dict[str, list[float]]
@@ -39,6 +39,8 @@ def twin_parameters(addresses: Addresses) -> tuple[Parameters | None, str]:
 
 def why_not(addresses: Addresses) -> str:
     """Why the twin cannot stand in for the scenario; empty where it can."""
+    if any(isinstance(value, str) and value for values in addresses.blueprint.values for value in values.values()):
+        return "a unit is given a text, as a height map's file is, and the twin is flown with numbers alone"
     if addresses.is_twin:
         return ""
     for check in (_foreign, _wired_otherwise, _shared, _constant_inputs, _unheard):
@@ -139,6 +141,8 @@ def _unheard(addresses: Addresses) -> str:
             values = addresses.blueprint.values[list(addresses.blueprint.interfaces).index(unit)]
             for name, elements in addresses.blueprint.interfaces[unit].vectors.items():
                 if name in _NOT_IN_TWIN or prefix + name in twin.vectors or elements[0].causality != "parameter":
+                    continue
+                if elements[0].kind is Kind.STRING:
                     continue
                 if any(it.name in values and values[it.name] != addresses.start(unit, it.name) for it in elements):
                     return f"{unit}.{name} is set, the twin has no such parameter"

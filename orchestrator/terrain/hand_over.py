@@ -25,7 +25,7 @@ def terrain_values(table: TerrainTable | None, interfaces: Mapping[str, Interfac
         return {}
     taking = [unit for unit, interface in interfaces.items() if MAP in interface.variables]
     if not taking:
-        raise ScenarioError(f"{where}: terrain: no unit here has a parameter {MAP}; use RegolithContact or LunarLander, or remove the table")
+        raise ScenarioError(f"{where}: terrain: no unit has a parameter {MAP}; use RegolithContact or LunarLander, or remove the table")
     values: dict[str, Value] = {"terrain.heading": table.heading, "terrain.reach": table.reach}
     if table.file is not None:
         values |= _of_map(read_height_map(table, where))
@@ -54,7 +54,8 @@ def _listed(name: str, rows: list[list[float]], interface: Interface, where: str
     numbers = [number for row in rows for number in row]
     if len(numbers) > len(elements):
         room = len(elements) // len(rows[0])
-        raise ScenarioError(f"{where}: terrain.{name}: {len(rows)} of them, {interface.model_name} has room for {room}; put the others into the map")
+        given = f"{where}: terrain.{name}: {len(rows)} of them"
+        raise ScenarioError(f"{given}, {interface.model_name} has room for {room}; put the others into the map")
     return {element.name: number for element, number in zip(elements, numbers, strict=False)}
 
 

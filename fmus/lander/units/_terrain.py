@@ -38,7 +38,8 @@ def relief_of(unit: Unit) -> Relief | None:
         refuse_crater(crater)
     for boulder in boulders:
         if not 0.0 < boulder.height <= 2.0 * boulder.radius:
-            raise UnitError(f"terrain.boulders: a height of {boulder.height:g} m, expects more than 0 and at most {2.0 * boulder.radius:g} m")
+            most = 2.0 * boulder.radius
+            raise UnitError(f"terrain.boulders: a height of {boulder.height:g} m, expects more than 0 and at most {most:g} m")
     heights = map_of(unit)
     if heights is None and not craters and not boulders:
         return None

@@ -84,7 +84,8 @@ class LunarLander(Unit):
     Inside are also, by default without effect: the engine of GuidanceControl (`guidance.*`), which acts from the twin's own first contact,
     and ThrustGroundEffect, PropellantSlosh, ReactionControl and BodyTerm (`plume.*`, `slosh.*`, `rcs.*`, `body_term.*`). The port `engine`
     adds to them; thrust that others follow is that inside plus the port's force along X.
-    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg), and all one relief (`terrain.*`). Parameters are those of VehicleBody,
+    Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg), and all one relief (`terrain.*`).
+    Parameters are those of VehicleBody,
     GearLeg and RegolithContact.
     """
 
