@@ -18,6 +18,7 @@ from orchestrator.check.command import check
 from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.doghouse.command import doghouse
 from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
+from orchestrator.host_environment import host_env
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
 from orchestrator.ssp.command import export
@@ -136,6 +137,7 @@ def show(scenario: ScenarioName, overrides: Overrides = None, variant: Variant =
 
 
 app.command()(check)
+app.command(context_settings={"ignore_unknown_options": True})(host_env)
 app.command()(diagnose)
 app.command()(distinguish)
 app.command()(export)
