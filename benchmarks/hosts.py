@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import sysconfig
+import venv
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -23,6 +24,7 @@ PACKAGES = {
     "ecos": ("ecospy==0.7.2", "pythonfmu==0.7.0", "tbb==2023.2.0"),   # its library needs libtbb.so.12 and does not bring it
     "fmpy": ("fmpy==0.3.32", "pythonfmu==0.7.0"),
     "cofmupy": ("cofmupy==1.0.0",),                                    # brings pythonfmu 0.6.3
+    "toolbox": ("fmu-manipulation-toolbox==2.0",),                     # no master: makes one FMU of several
 }
 SHOWN = {"libcosim": "libcosim", "ecos": "ecos", "fmpy": "FMPy SSP", "cofmupy": "CoFmuPy"}
 
@@ -47,16 +49,24 @@ def environment(peer: str) -> tuple[Path | None, str]:
     folder = FOLDER / peer
     python = folder / "bin" / "python"
     done = folder / "made-with.txt"
-    # the units need numpy and numba in whatever interpreter runs them: the same versions for all
-    wanted = [*PACKAGES[peer], *(f"{name}=={version(name)}" for name in ("numpy", "numba"))]
+    # the units need numpy and numba in whatever interpreter runs them: those of this environment, lent to all
+    wanted = [*PACKAGES[peer], *(f"{name}=={version(name)} lent" for name in ("numpy", "numba"))]
     if done.exists() and done.read_text("utf-8") == "\n".join(wanted):
         return python, ""
-    for command in ([sys.executable, "-m", "venv", str(folder)], [str(python), "-m", "pip", "install", "-q", *wanted]):
-        made = subprocess.run(command, capture_output=True, text=True, check=False)
-        if made.returncode:
-            return None, last_line(made.stderr) or f"{command[-1]}: exit code {made.returncode}"
+    venv.create(folder, clear=True, symlinks=True)
+    lend(folder)      # pip too
+    install = [str(python), "-m", "pip", "install", "-q", "--disable-pip-version-check", *PACKAGES[peer]]
+    made = subprocess.run(install, capture_output=True, text=True, check=False)
+    if made.returncode:
+        return None, last_line(made.stderr) or f"{install[-1]}: exit code {made.returncode}"
     done.write_text("\n".join(wanted), "utf-8")
     return python, ""
+
+
+def lend(folder: Path) -> None:
+    """Let an environment see this one's packages behind its own."""
+    packages = Path(sysconfig.get_path("purelib", vars={"base": str(folder), "platbase": str(folder)}))
+    (packages / "lent.pth").write_text(sysconfig.get_path("purelib") + "\n", "utf-8")
 
 
 def run_peer(peer: str, task: dict[str, Any], timeout: float = TIMEOUT) -> Outcome:
