@@ -89,7 +89,11 @@ def _units(pairs: Sequence[tuple[Member, list[Variable]]]) -> Iterator[Finding]:
                 yield Finding("units of measure", Verdict.WARN, what, member.name, f"declare {member.unit}, or a mistake goes unseen")
         elif first.dimension is not None and first.dimension != member.dimension:
             what = f"is in {first.unit}{_size(first, member)}, the contract has {member.unit}"
-            yield Finding("units of measure", Verdict.FAIL, what, member.name, f"give and take {member.unit}")
+            if first.dimension[:8] == (member.dimension or ())[:8]:
+                do = f"our master converts it, others do not: give {member.unit}"
+                yield Finding("units of measure", Verdict.WARN, what, member.name, do)
+            else:
+                yield Finding("units of measure", Verdict.FAIL, what, member.name, f"give and take {member.unit}")
         elif first.dimension is None and first.unit != member.unit:
             what = f"is in {first.unit}, which UnitDefinitions does not define, the contract has {member.unit}"
             yield Finding("units of measure", Verdict.FAIL, what, member.name, f"give and take {member.unit}, and define it")
