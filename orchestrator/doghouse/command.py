@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def doghouse(
     plan: Annotated[str, typer.Argument(help="A Doghouse's TOML file, or the bare name of one in scenarios/.")] = "doghouse",
-    out: Annotated[Path | None, typer.Option(help="Folder for picture and data [default: results/PLAN].")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for picture and data (default: results/PLAN).")] = None,
     workers: Annotated[int, typer.Option(help="Processes on this machine; 0: one a core.")] = 0,
     scheduler: Annotated[str | None, typer.Option(help="Address of a dask scheduler; without it, processes on this machine.")] = None,
     check: Annotated[bool, typer.Option(help="Fly both landings of every bracket again by the separate units.")] = True,
@@ -35,6 +35,7 @@ def doghouse(
     from orchestrator.doghouse.model import read
     from orchestrator.doghouse.picture import draw
     from orchestrator.doghouse.report import terminal_report
+    from orchestrator.doghouse.table import markdown
 
     path = find_scenario(plan)
     read_plan = read(path)
@@ -48,6 +49,7 @@ def doghouse(
         typer.echo(f"interrupted: {folder}: what has been flown is kept; the same command goes on from there", err=True)
         raise typer.Exit(EXIT_INTERRUPTED) from None
     outcome.write(folder)
+    (folder / "doghouse.md").write_text(markdown(outcome), encoding="utf-8")
     draw(outcome, folder / "doghouse.png")
     if not quiet:
         Console().print(terminal_report(outcome, folder))

@@ -53,6 +53,8 @@ class Logbook:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._known: dict[str, Margins] = {}
+        self.cost: dict[str, float] = {}
+        """s of computing."""
         if path.is_file():
             for line in path.read_text(encoding="utf-8").splitlines():
                 self._learn(line)
@@ -60,18 +62,18 @@ class Logbook:
     def get(self, key: str) -> Margins | None:
         return self._known.get(key)
 
-    def put(self, key: str, margins: Margins) -> None:
-        self._known[key] = margins
+    def put(self, key: str, margins: Margins, cpu_seconds: float) -> None:
+        self._known[key], self.cost[key] = margins, cpu_seconds
         with self.path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"key": key, **asdict(margins)}) + "\n")
+            file.write(json.dumps({"key": key, "cpu_seconds": cpu_seconds, **asdict(margins)}) + "\n")
 
     def _learn(self, line: str) -> None:
         """A line half written when the machine went down is passed over: that landing is flown again."""
         try:
             row = json.loads(line)
-            key = row.pop("key")
+            key, cpu_seconds = row.pop("key"), row.pop("cpu_seconds", 0.0)
             row["failed"] = tuple(row["failed"])
-            self._known[key] = Margins(**row)
+            self._known[key], self.cost[key] = Margins(**row), cpu_seconds
         except (ValueError, KeyError, TypeError):
             return
 
@@ -92,9 +94,9 @@ class Flying:
         self._tell(stage, len(wanted) - len(left), len(wanted))
         for done, (key, landing) in enumerate(self.crew.fly(scenario.base, left.items()), start=len(wanted) - len(left) + 1):
             self.flown += 1
-            self.cpu_seconds += landing.cpu_seconds
-            self.logbook.put(key, margins_of(landing.outputs, landing.error))
+            self.logbook.put(key, margins_of(landing.outputs, landing.error), landing.cpu_seconds)
             self._tell(stage, done, len(wanted))
+        self.cpu_seconds += sum(self.logbook.cost.get(key, 0.0) for key in dict(wanted))
         return [found for key, _ in wanted if (found := self.logbook.get(key)) is not None]
 
     def _key(self, scenario: Scenario, text: Sequence[str]) -> str:

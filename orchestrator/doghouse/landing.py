@@ -46,7 +46,9 @@ class Margins:
     left: Mapping[str, float | None]
     failed: tuple[str, ...]
     decided: bool
+    """Tip-over: over, or no longer able to go over."""
     stands: bool
+    """At rest at the end; else the strokes of what is still to come, as of falling back after a swing, are not in the margins."""
     where: Mapping[str, str] = field(default_factory=dict)
     """The edge it came nearest to going over, the struts that came nearest to their limits."""
     clearance_m: float | None = None

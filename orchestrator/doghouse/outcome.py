@@ -80,6 +80,8 @@ class Outcome:
             "vertical_m_s": held.vertical_m_s,
             "inputs": held.as_dict(),
             "margin": bracket.inside_margins.left[name],
+            "at_rest": bracket.inside_margins.stands,
+            "clearance_m": bracket.inside_margins.clearance_m,
             "unit": UNITS[name],
             "where": bracket.beyond_margins.where.get(name, ""),
             "outside_certified": self.outside(ray, name),

@@ -65,5 +65,5 @@ def _notes(outcome: Outcome) -> list[str]:
         notes.append(f"{audit['landings']} landings at random inside the envelope: {len(audit['failed'])} fail")
     cost = summary["cost"]
     took = f"{cost['cpu_s']:.0f} s of computing, {cost['wall_s']:.0f} s on {cost['workers']:.0f} workers"
-    notes.append(f"{cost['landings']:.0f} landings, of which {cost['flown_now']:.0f} were flown now: {took}")
+    notes.append(f"{cost['landings']:.0f} landings, of which {cost['flown_now']:.0f} flown by this call: {took}")
     return notes

@@ -16,6 +16,7 @@ from orchestrator.doghouse.outcome import Outcome
 from orchestrator.doghouse.picture import draw
 from orchestrator.doghouse.report import terminal_report
 from orchestrator.doghouse.search import search
+from orchestrator.doghouse.table import markdown
 from orchestrator.errors import ScenarioError
 
 PLAN = Path(__file__).parents[2] / "scenarios" / "doghouse.toml"
@@ -106,6 +107,7 @@ def test_a_boundary_inside_the_envelope_is_named_with_its_landing_and_reason(tmp
     console = Console(width=160, record=True)
     console.print(terminal_report(outcome, tmp_path))
     assert "tip over inside the envelope: heading" in console.export_text()
+    assert "| tip over |" in markdown(outcome)
     assert draw(outcome, tmp_path / "doghouse.png").stat().st_size > 20_000
 
 
@@ -184,11 +186,12 @@ def test_landings_at_random_lie_inside_the_envelope_and_are_the_same_every_time(
 def test_a_line_half_written_is_flown_again(tmp_path):
     book = Logbook(tmp_path / "landings.jsonl")
     margins = Margins(dict.fromkeys(BOUNDARIES, 1.0), (), True, True, {"tip_over": "+Z | +Y"}, 0.3)
-    book.put("a", margins)
+    book.put("a", margins, 0.5)
     with book.path.open("a") as file:
         file.write('{"key": "b", "left"')
     again = Logbook(book.path)
     assert again.get("a") == margins
+    assert again.cost["a"] == 0.5
     assert again.get("b") is None
 
 
