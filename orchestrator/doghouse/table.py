@@ -7,7 +7,7 @@ from typing import Any
 from orchestrator.doghouse.landing import BOUNDARIES, Inputs
 from orchestrator.doghouse.outcome import Outcome, words
 
-HEAD = "| boundary | horizontal, m/s | vertical, m/s | times certified | left | beyond | separate units: left, beyond | at rest | landing | where |"
+HEAD = "| boundary | horizontal, m/s | vertical, m/s | times certified | left | beyond | units: left, beyond | at rest | landing | where |"
 
 
 def markdown(outcome: Outcome) -> str:
