@@ -164,4 +164,4 @@ class RunResult:
     results: dict[str, Any] = field(default_factory=dict)
     """The scenario's [results] table, unchanged."""
     parameters: dict[str, float] = field(default_factory=dict)
-    """"unit.parameter" -> number it ran with, those left at the unit's own start value among them."""
+    """"unit.parameter" -> number it ran with, those left at the unit's own start value among them; of a text, 1 where there is any."""

@@ -1,5 +1,6 @@
 """Where the vehicle, its pads and the ground were, by the names of recorded outputs and of the units' parameters."""
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -9,7 +10,8 @@ from orchestrator.results.schema import ResultsTable
 from orchestrator.results.tip_over import MassProperties, Motion
 
 Parameters = Mapping[str, float]
-"""`unit.parameter` -> number, defaults included."""
+"""`unit.parameter` -> number, defaults included; of a text, whether there is any."""
+RELIEF = re.compile(r"\.terrain\.(map|craters\[\d+\]|boulders\[\d+\])$")
 
 
 def mass_properties(body: str, parameters: Parameters) -> MassProperties | None:
@@ -39,7 +41,13 @@ def pad_positions(channels: Channels, table: ResultsTable) -> Array | None:
 
 
 def ground_plane(table: ResultsTable, parameters: Parameters) -> tuple[Array, Array] | None:
-    """A point and the unit normal of the one plane all soils lie in, N = Rx(azimuth) Ry(slope) x̂ as docs/physics.md has it."""
+    """A point and the unit normal of the one plane all soils lie in, N = Rx(azimuth) Ry(slope) x̂ as docs/physics.md has it.
+
+    None where there are several, or a relief on it.
+    """
+    units = {names.soil.partition(".")[0] for names in table.legs.values()}
+    if any(value != 0.0 for name, value in parameters.items() if name.partition(".")[0] in units and RELIEF.search(name)):
+        return None
     planes = set()
     for k, names in enumerate(table.legs.values(), start=1):
         unit, _, inner = names.soil.partition(".")

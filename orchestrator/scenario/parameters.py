@@ -28,11 +28,13 @@ def start_values(unit: str, interface: Interface, parameters: Mapping[str, Any])
 
 
 def numbers(unit: str, interface: Interface, given: Mapping[str, Value]) -> dict[str, float]:
-    """`unit.parameter` -> the number it runs with: as given, else the unit's own start value. Text and bytes are left out."""
+    """`unit.parameter` -> the number it runs with: as given, else the unit's start value. Of a text, whether there is any; no bytes."""
     known: dict[str, float] = {}
     for variable in interface.of("parameter"):
         value = given.get(variable.name, variable.start)
-        if variable.kind in NUMBERS and value is not None:
+        if variable.kind is Kind.STRING:
+            known[f"{unit}.{variable.name}"] = float(bool(value))
+        elif variable.kind in NUMBERS and value is not None:
             known[f"{unit}.{variable.name}"] = float(value == "true") if value in ("true", "false") else float(value)
     return known
 

@@ -91,6 +91,12 @@ def test_soils_in_different_planes_have_no_ground_plane():
     assert failure(standing(), NAMES, parameters() | {"soil+Z.ground_slope": 0.1})["clearance"] is None
 
 
+@pytest.mark.parametrize("name", ["terrain.map", "terrain.craters[3]", "terrain.boulders[3]"])
+def test_over_a_relief_no_clearance_is_claimed(name):
+    assert failure(standing(), NAMES, parameters() | {f"soil+Z.{name}": 1.0})["clearance"] is None
+    assert failure(standing(), NAMES, parameters() | {f"soil+Z.{name}": 0.0})["clearance"] is not None
+
+
 def test_the_twins_parameters_are_one_element_a_leg():
     legs = {leg: {"leg": f"lander.leg{k}", "soil": f"lander.soil{k}"} for k, leg in enumerate(LEGS, start=1)}
     given = {f"lander.soil.ground_{name}[{k}]": value for k in range(1, 5) for name, value in (("slope", 0.2), ("azimuth", 0.0))}
