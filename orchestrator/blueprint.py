@@ -11,7 +11,9 @@ from orchestrator.fmi.description import read_interface
 from orchestrator.master.converter import Derived
 from orchestrator.master.slave import Interface, Value
 from orchestrator.master.system import Link, PortPair
+from orchestrator.master.until import Bound
 from orchestrator.results.schema import read as read_results_table
+from orchestrator.scenario.early_end import bounds_of
 from orchestrator.scenario.expand import Scenario, expand
 from orchestrator.scenario.locate import find_fmu, fmu_folder
 from orchestrator.scenario.parameters import start_values
@@ -40,6 +42,8 @@ class Blueprint:
     """Outputs worked out for connections in another unit of measure, frame or sign, per unit."""
     made: list[int] = field(default_factory=list)
     """How many links each connection came to."""
+    bounds: list[Bound] = field(default_factory=list)
+    """Conditions of an early end."""
 
 
 def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None, variant: str = "") -> Scenario:
@@ -71,6 +75,10 @@ def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
     zero = matching_outputs(scenario.zero, interfaces, f"{scenario.where}: start.zero") if scenario.zero else []
     locate = scenario.table.master.locate
     located = matching_outputs(locate, interfaces, f"{scenario.where}: master.locate", DISCRETE) if locate else []
+    bounds = bounds_of(scenario.table.until, interfaces, f"{scenario.where}: until")
+    for bound in bounds:
+        if recorded and bound.output not in recorded[bound.unit]:
+            recorded[bound.unit].append(bound.output)
     return Blueprint(
-        scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located, wiring.derived, wiring.made
+        scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located, wiring.derived, wiring.made, bounds
     )

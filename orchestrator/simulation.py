@@ -14,11 +14,12 @@ from orchestrator.fmi.load import load
 from orchestrator.master.converter import Converter
 from orchestrator.master.master import Master
 from orchestrator.master.result import RunResult, UnitRecord
-from orchestrator.master.settings import MasterSettings
+from orchestrator.master.settings import MasterSettings, in_ns
 from orchestrator.master.slave import Kind, Slave, Value
 from orchestrator.master.start import solve_start
 from orchestrator.master.system import System
 from orchestrator.master.trust import distrust
+from orchestrator.master.until import Until
 from orchestrator.scenario.model import StartTable
 from orchestrator.scenario.parameters import SETTABLE, numbers
 
@@ -41,6 +42,8 @@ class Simulation:
         self.system = System(slaves, blueprint.links, blueprint.pairs, once, blueprint.recorded, blueprint.zero, blueprint.located)
         settings = MasterSettings(**table.master.model_dump(exclude={"order", "locate"}), record_interval=table.record.interval)
         self.master = Master(self.system, settings)
+        if table.until is not None:
+            self.master.until = Until(self.master.plan.board, blueprint.bounds, in_ns(table.until.hold))
         self.on_hang: Callable[[RunResult], None] | None = None
         """What to do with the run so far when a unit does not come back; called from another thread, must leave the process."""
 

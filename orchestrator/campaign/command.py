@@ -12,10 +12,11 @@ import typer
 from rich.console import Console
 
 from orchestrator.errors import EXIT_INTERRUPTED
+from orchestrator.scenario.locate import find_campaign
 
 
 def campaign(
-    campaign: Annotated[Path, typer.Argument(help="A campaign's TOML file, or the folder of one that was begun.")],
+    campaign: Annotated[str, typer.Argument(help="A file, the bare name of one in scenarios/campaigns, or the folder of one begun.")],
     out: Annotated[Path | None, typer.Option(help="Folder for the landings [default: results/CAMPAIGN].")] = None,
     scheduler: Annotated[str | None, typer.Option(help="Address of a dask scheduler; without it, processes on this machine.")] = None,
     workers: Annotated[int, typer.Option(help="Processes on this machine; 0: one a core.")] = 0,
@@ -31,8 +32,9 @@ def campaign(
     from orchestrator.campaign.crew import Crew
     from orchestrator.campaign.summary import terminal_summary
 
-    plan = Campaign.read(campaign)
-    folder = out or (campaign if campaign.is_dir() else Path("results") / campaign.stem)
+    path = find_campaign(campaign)
+    plan = Campaign.read(path)
+    folder = out or (path if path.is_dir() else Path("results") / path.stem)
     if only is not None:
         fly_alone(plan, folder, only, quiet)
         return

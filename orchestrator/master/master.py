@@ -23,6 +23,7 @@ from orchestrator.master.start import Values, initialise
 from orchestrator.master.sweep import Sweep, jobs_of
 from orchestrator.master.system import System
 from orchestrator.master.trials import Trial, warnings_of
+from orchestrator.master.until import Until
 from orchestrator.master.watchdog import Watchdog
 
 StepListener = Callable[[float], None]
@@ -33,7 +34,7 @@ class Master:
 
     MEMORY = (
         *("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger"),
-        *("switched", "block_memory", "events"),
+        *("switched", "block_memory", "events", "until"),
     )
     """What passes from one accepted step to the next outside the units, kept by checkpoints. An object named here has its own."""
 
@@ -45,6 +46,7 @@ class Master:
         self.recorder = Recorder(system, self.plan.board, in_ns(self.settings.record_interval))
         self.ledger = Ledger(system, self.plan.board)
         self.events = Events(self.plan, self.settings.event_tolerance)
+        self.until = Until(self.plan.board)
         self.log: list[Attempt] = []
         self.warnings: list[str] = []
         self.unresolved = 0
@@ -274,6 +276,8 @@ class Master:
                 slave.observe()
             check_finite(self.plan, self._time)
             self.recorder.record(self._time / NANOSECONDS, elapsed)
+            if self.until.met(elapsed):
+                self._stop = self._time
 
     def _note(self, interval: int, estimate: float, accepted: bool, limit: str) -> None:
         passes = max(self._passes, self._sweep.iterations)

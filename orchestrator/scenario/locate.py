@@ -18,10 +18,10 @@ def scenario_folder() -> Path | None:
 
 
 def all_scenarios() -> list[Path]:
-    """Those of the folder and of the folders in it; `candidates` holds effects, `measured` data."""
+    """Those of the folder and of the folders in it; `candidates` holds effects, `measured` data, `campaigns` campaigns."""
     folder = scenario_folder()
     found = sorted(folder.rglob("*.toml")) if folder else []
-    return [path for path in found if not {"candidates", "measured"} & set(path.relative_to(folder or path).parts)]
+    return [path for path in found if not {"candidates", "measured", "campaigns"} & set(path.relative_to(folder or path).parts)]
 
 
 def find_scenario(text: str) -> Path:
@@ -35,6 +35,17 @@ def find_scenario(text: str) -> Path:
     if found:
         return found[0]
     raise ScenarioError(f'{text}: no such scenario; {nearest(text, [p.stem for p in all_scenarios()])}')
+
+
+def find_campaign(text: str) -> Path:
+    """A file or folder as given, or a bare name found in scenarios/campaigns."""
+    if Path(text).exists() or is_path(text) or text.endswith(".toml"):
+        return Path(text)
+    folder = scenario_folder()
+    found = {path.stem: path for path in sorted((folder / "campaigns").glob("*.toml"))} if folder else {}
+    if text in found:
+        return found[text]
+    raise ScenarioError(f"{text}: no such campaign, nor a folder of one; {nearest(text, found)}")
 
 
 def fmu_folder(stated: str | None, scenario: Path | None) -> Path:

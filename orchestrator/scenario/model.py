@@ -101,6 +101,23 @@ class MasterTable(Table):
         return self
 
 
+class UntilTable(Table):
+    """End before the stop time: at the first recorded instant at which all of this has held for `hold`. At rest, for instance."""
+
+    hold: Positive
+    """s"""
+    below: dict[str, Positive] = {}
+    """Globs over outputs -> what their magnitude must be below, each element for itself."""
+    above: dict[str, Positive] = {}
+    """... and what it must not be below; a Boolean that is true counts 1."""
+
+    @model_validator(mode="after")
+    def _says_something(self) -> UntilTable:
+        if not self.below and not self.above:
+            raise ValueError("holds no condition; add below or above")
+        return self
+
+
 class RecordTable(Table):
     interval: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = 0.0
     """s; 0 records every accepted step."""
@@ -118,6 +135,7 @@ class ScenarioTable(Table):
     connections: list[ConnectionTable] = []
     terrain: TerrainTable | None = None
     start: StartTable | None = None
+    until: UntilTable | None = None
     master: MasterTable = MasterTable()
     record: RecordTable = RecordTable()
     paper: dict[str, Any] = {}
@@ -133,7 +151,9 @@ def _orthogonal(rows: list[list[float]]) -> bool:
 
 def known_keys(path: tuple[int | str, ...]) -> list[str]:
     """Keys allowed in the table at this path of a scenario."""
-    tables: dict[str, type[BaseModel]] = {"terrain": TerrainTable, "master": MasterTable, "record": RecordTable, "start": StartTable}
+    tables: dict[str, type[BaseModel]] = {
+        "terrain": TerrainTable, "master": MasterTable, "record": RecordTable, "start": StartTable, "until": UntilTable,
+    }  # fmt: skip
     match path:
         case ():
             return [*ScenarioTable.model_fields, "extends", "disconnect"]
