@@ -124,7 +124,7 @@ class Crew:
     def _own_cluster(self) -> LocalCluster:
         from distributed import LocalCluster
 
-        options: dict[str, Any] = {"processes": True, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": None}
+        options: dict[str, Any] = {"processes": True, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": ":0"}
         return LocalCluster(n_workers=self.workers, silence_logs=logging.CRITICAL, env=ONE_THREAD, **options)
 
 
