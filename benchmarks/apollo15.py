@@ -57,7 +57,8 @@ def main() -> None:
             shares = np.vstack([shares, new])
             nearest = min(rows, key=lambda row: float(row["distance"]))
             inside = sum(row["inside"] for row in rows)
-            print(f"generation {generation}: {len(rows)} landings, nearest {nearest['distance']:.2f}, all facts inside: {inside}", flush=True)
+            so_far = f"nearest {nearest['distance']:.2f}, all facts inside: {inside}"
+            print(f"generation {generation}: {len(rows)} landings, {so_far}", flush=True)
     given.out.mkdir(parents=True, exist_ok=True)
     (given.out / "landings.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     report(rows, list(plan.addresses))
@@ -118,7 +119,8 @@ def report(rows: list[dict[str, Any]], names: list[str]) -> None:
     for name, (value, allowed) in FACTS.items():
         print(f"| {name} | {value:g} | ± {allowed:g} | {nearest['facts'][name]:.3g} |")
     inside = [row for row in rows if row["inside"]]
-    print(f"\n{len(inside)} of {len(rows)} landings have all facts inside.\n\n| input | least | greatest | nearest landing |\n|---|---|---|---|")
+    print(f"\n{len(inside)} of {len(rows)} landings have all facts inside.\n")
+    print("| input | least | greatest | nearest landing |\n|---|---|---|---|")
     for name in names:
         values = [float(row["inputs"][name]) for row in inside] or [float("nan")]
         print(f"| {name} | {min(values):.4g} | {max(values):.4g} | {nearest['inputs'][name]:.4g} |")

@@ -14,6 +14,7 @@ import typer
 from rich.console import Console
 
 from orchestrator.campaign.command import campaign
+from orchestrator.campaign.sensitivity_command import sensitivity
 from orchestrator.check.command import check
 from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.doghouse.command import doghouse
@@ -143,6 +144,7 @@ app.command()(distinguish)
 app.command()(export)
 app.command()(campaign)
 app.command()(doghouse)
+app.command()(sensitivity)
 
 
 @app.command("list")

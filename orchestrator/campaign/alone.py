@@ -6,13 +6,12 @@ import shlex
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.parquet as pq
+import pyarrow.compute as pc
 import typer
 from rich.console import Console
 
 from orchestrator.campaign.campaign import Campaign
-from orchestrator.campaign.data_set import COST, INDEX
+from orchestrator.campaign.data_set import COST, INDEX, kept_landings
 from orchestrator.campaign.landing import blueprint
 from orchestrator.campaign.outputs import flat, outcome
 from orchestrator.errors import RunError, UserError
@@ -51,9 +50,8 @@ def fly_alone(plan: Campaign, folder: Path, index: int, quiet: bool = False) -> 
 
 def kept_row(folder: Path, index: int) -> dict[str, Any] | None:
     """What the campaign has of it, so far as it has got."""
-    files = [path for path in (folder / "landings.parquet", *sorted((folder / "parts").glob("*.parquet"))) if path.is_file()]
-    for path in files:
-        rows: pa.Table = pq.read_table(path, filters=[(INDEX, "=", index)])
-        if rows.num_rows:
-            return {name: value for name, value in rows.to_pylist()[0].items() if name not in (INDEX, *COST)}
-    return None
+    if not (folder / "campaign.json").is_file():
+        return None
+    rows = kept_landings(folder)
+    row = rows.filter(pc.equal(rows[INDEX], index)).to_pylist()
+    return {name: value for name, value in row[0].items() if name not in (INDEX, *COST)} if row else None

@@ -14,6 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from orchestrator.campaign.landing import Landing
+from orchestrator.errors import UserError
 
 MERGED_AT = 200
 """Parts."""
@@ -87,15 +88,27 @@ class DataSet:
             part.unlink()
 
     def _in_order(self) -> pa.Table:
-        """Once each."""
-        table = pa.concat_tables(self._kept() or [self.schema.empty_table()])
-        first = {index: row for row, index in reversed(list(enumerate(table[INDEX].to_pylist())))}
-        return table.take([first[index] for index in sorted(first)]).combine_chunks()
+        return in_order(pa.concat_tables(self._kept() or [self.schema.empty_table()]))
 
     def _write(self, table: pa.Table, path: Path) -> None:
         unfinished = path.with_suffix(".unfinished")
         pq.write_table(table, unfinished, compression="zstd")
         unfinished.replace(path)
+
+
+def kept_landings(folder: Path) -> pa.Table:
+    """What a campaign's folder has so far, in the order of the index, each once; whether finished or not."""
+    whole = folder / "landings.parquet"
+    parts = [pq.read_table(path) for path in ([whole] if whole.is_file() else sorted((folder / "parts").glob("*.parquet")))]
+    if not parts:
+        raise UserError(f"{folder}: has no landings yet; fly the campaign first: orchestrator campaign {folder}")
+    return in_order(pa.concat_tables(parts))
+
+
+def in_order(table: pa.Table) -> pa.Table:
+    """By index, each once."""
+    first = {index: row for row, index in reversed(list(enumerate(table[INDEX].to_pylist())))}
+    return table.take([first[index] for index in sorted(first)]).combine_chunks()
 
 
 def as_table(columns: Mapping[str, Sequence[Any]]) -> pa.Table:
