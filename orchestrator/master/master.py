@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import nan
 from time import perf_counter
 
+from orchestrator.errors import UnitError
 from orchestrator.master.checks import check_finite
 from orchestrator.master.coupling import check_asked, connection_records, couple
 from orchestrator.master.estimates import Estimates
@@ -95,6 +96,9 @@ class Master:
         with self.watchdog:
             for slave, trial in zip(self.system.slaves, trials, strict=True):
                 trial.run(self.limits.maximum, self.limits.minimum)
+                if trial.untrue and slave.name not in self.system.once:
+                    claim = f"{slave.name}: claims rollback (canGetAndSetFMUstate), but {trial.untrue}"
+                    raise UnitError(f"{claim}; mend the unit, or set its once = true")
                 self.warnings += warnings_of(slave.name, trial.record)
         self.trials = [trial.record for trial in trials]
         self.rollback = [record.rollback == "true" for record in self.trials]

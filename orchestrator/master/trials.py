@@ -1,6 +1,7 @@
 """What each unit claims, tried before the first step: a claim that is not true is worse than none.
 
-    rollback            save, step, restore, step: the same bits three times (which a unit that is not deterministic fails too)
+    rollback            save, step, restore, step: the same bits three times (which a unit that is not deterministic fails too); an error,
+                        unless the scenario has the unit stepped once anyway
     serialisation       the state as bytes and back: the same bytes, and the same bits from there
     step-size           one step of H against two of H/2 with the same inputs: the largest relative difference, reported, not judged
 """
@@ -45,6 +46,8 @@ class Trial:
             slopes=sum(companion(name, "_slope") in interface.variables for name in linked),
             interpolates=interface.claims("canInterpolateInputs"),
         )
+        self.untrue = ""
+        """What differed after going back, where rollback is claimed and not true."""
         self.spoilt = False
         """Whether the unit could not be put back to its start."""
 
@@ -58,15 +61,27 @@ class Trial:
         while first[0] is Status.DISCARD and interval // 2 >= shortest:
             interval //= 2
             first = self._outcome(interval)
-        if not first == self._outcome(interval) == self._outcome(interval):
-            self.record = self.record.but(rollback="claimed, not true")
-            self.spoilt = True
-            return
+        for _ in range(2):
+            again = self._outcome(interval)
+            if again != first:
+                self.record = self.record.but(rollback="claimed, not true")
+                self.untrue = self._difference(first, again)
+                self.spoilt = True
+                return
         self.record = self.record.but(rollback="true")
         if first[0] is not Status.DISCARD and self.record.variable_step:
             self._halve(interval, np.frombuffer(first[1]))
         if self.record.serialisation == "claimed" and isinstance(self._slave, Serialises):
             self._serialise(self._slave, interval, first)
+
+    def _difference(self, first: Outcome, again: Outcome) -> str:
+        """The first output that is not the same."""
+        before, after = np.frombuffer(first[1]), np.frombuffer(again[1])
+        apart = np.flatnonzero(before.view(np.int64) != after.view(np.int64))
+        if not len(apart):
+            return f"a step is {first[0].name} and, repeated, {again[0].name}"
+        at = int(apart[0])
+        return f"{self._names[at]} is {before[at]:.9g} after a step and {after[at]:.9g} after going back and stepping again"
 
     def _halve(self, interval: int, whole: Vector) -> None:
         half = interval // 2
@@ -115,7 +130,7 @@ class Trial:
 def warnings_of(name: str, record: TrialRecord) -> list[str]:
     found = []
     if record.rollback == "claimed, not true":
-        found.append(f"{name}: claims rollback but does not return to the same bits; stepped once per accepted step instead")
+        found.append(f"{name}: claims rollback but does not return to the same bits; it is never taken back")
     if record.serialisation == "claimed, not true":
         found.append(f"{name}: claims to serialise its state but does not go on from the bytes with the same bits; no checkpoints with it")
     return found

@@ -153,7 +153,7 @@ CANNOT = {
 @pytest.mark.parametrize(("model", "message"), CANNOT.items(), ids=CANNOT)
 def test_a_unit_that_cannot_be_kept_is_named_when_checkpoints_are_asked_for(tmp_path: Path, model: str, message: str) -> None:
     path = tmp_path / "one.toml"
-    path.write_text(f'stop_time = 0.01\nfmus = "{sample_fmus().as_posix()}"\n[units.u]\nfmu = "{model}"\n')
+    path.write_text(f'stop_time = 0.01\nfmus = "{sample_fmus().as_posix()}"\n[units.u]\nfmu = "{model}"\nonce = true\n')
     done = orchestrator("run", path, *EVERY, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(f"error: {message}")

@@ -152,7 +152,8 @@ def test_the_oscillator_of_fmus_follows_its_closed_form(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("model", "warned"), [("SampleForgetful", True), ("SampleStateless", False)])
 def test_a_unit_that_cannot_truly_roll_back_is_stepped_once_per_accepted_step(tmp_path: Path, model: str, warned: bool) -> None:
-    damper = f'\n[units.damper]\nfmu = "{model}"\n[[connections]]\nports = ["b.end", "damper.end"]\n'
+    once = "once = true\n" if warned else ""
+    damper = f'\n[units.damper]\nfmu = "{model}"\n{once}[[connections]]\nports = ["b.end", "damper.end"]\n'
     text = {'[[connections]]\nports = ["b.end", "spring.b"]': "", "tolerance = 1e-6": "tolerance = 1e-6\npasses = 2"}
     result = run_scenario(oscillator(tmp_path, damper, **text))
     record = {r.name: r for r in result.unit_records}["damper"]
@@ -160,6 +161,12 @@ def test_a_unit_that_cannot_truly_roll_back_is_stepped_once_per_accepted_step(tm
     assert record.steps == result.accepted
     assert any("damper: claims rollback" in w for w in result.warnings) == warned
     assert result.columns["damper.end.count"][-1] == pytest.approx(0.5, abs=1e-9)      # the trial left no trace
+
+
+def test_a_unit_that_lies_about_its_rollback_is_an_error_that_names_what_differed(tmp_path: Path) -> None:
+    damper = '\n[units.damper]\nfmu = "SampleForgetful"\n[[connections]]\nports = ["b.end", "damper.end"]\n'
+    with pytest.raises(UnitError, match=r"damper: claims rollback .*, but end.count is 0.002 after a step and 0.004 after going back"):
+        run_scenario(oscillator(tmp_path, damper, **{'[[connections]]\nports = ["b.end", "spring.b"]': ""}))
 
 
 def test_a_fatal_unit_ends_the_run_and_what_was_computed_stays(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from math import nan
 import pytest
 from master_samples import fixed, links, mass, oscillator, prepared, spring
 
-from orchestrator.errors import StepError
+from orchestrator.errors import StepError, UnitError
 from orchestrator.master.function_unit import FunctionUnit
 from orchestrator.master.settings import MasterSettings
 from orchestrator.master.system import Link, System
@@ -80,7 +80,9 @@ def test_a_claim_of_rollback_that_is_not_true_is_found_at_the_start() -> None:
         return {"y": hidden[0]}
 
     liar = FunctionUnit("liar", {"x": 0.0}, {}, lambda s, u: {"y": hidden[0]}, advance)
-    master = prepared(System([liar], [], recorded=[["y"]]), COARSE)
+    with pytest.raises(UnitError, match=r"liar: claims rollback .*, but y is 0\.008 after a step and 0\.016 after going back and"):
+        prepared(System([liar], [], recorded=[["y"]]), COARSE)
+    master = prepared(System([liar], [], recorded=[["y"]], once=frozenset({"liar"})), COARSE)
     assert master.rollback == [False]
     assert "liar: claims rollback but does not return to the same bits" in master.warnings[0]
 
