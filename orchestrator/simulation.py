@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.checkpoint.schedule import Schedule
 from orchestrator.checkpoint.snapshot import Snapshot, put
+from orchestrator.crash import last_words
 from orchestrator.errors import OrchestratorError, RunError, TrustError, UnitError, nearest
 from orchestrator.fmi.load import load
+from orchestrator.fmi.unit import FmuUnit
 from orchestrator.master.converter import Converter
 from orchestrator.master.master import Master
 from orchestrator.master.result import RunResult, UnitRecord
@@ -35,7 +40,7 @@ class Simulation:
         self.blueprint = blueprint
         table = blueprint.scenario.table
         if slaves is None:
-            slaves = [load(name, interface) for name, interface in blueprint.interfaces.items()]
+            slaves = [load(unit.name, blueprint.interfaces[unit.name], unit.isolate) for unit in blueprint.scenario.units]
         wanted = blueprint.derived or [[]] * len(slaves)
         slaves = [Converter(slave, derived) if derived else slave for slave, derived in zip(slaves, wanted, strict=True)]
         once = frozenset(unit.name for unit in blueprint.scenario.units if unit.once)
@@ -51,11 +56,12 @@ class Simulation:
         """Initialise, step to the end, collect. A unit that fails while stepping ends the run with what there is so far."""
         if schedule is not None:
             schedule.check(self.master)
-        self.initialise()
-        self.master.prepare()
-        if schedule is not None:
-            schedule.begin(self.master, self.blueprint, fresh=True)
-        return self._go(on_step, schedule)
+        with self._last_words():
+            self.initialise()
+            self.master.prepare()
+            if schedule is not None:
+                schedule.begin(self.master, self.blueprint, fresh=True)
+            return self._go(on_step, schedule)
 
     def initialise(self) -> None:
         """To the start: outputs consistent round the system, the start condition solved."""
@@ -72,12 +78,13 @@ class Simulation:
 
     def resume(self, snapshot: Snapshot, on_step: Progress | None = None, schedule: Schedule | None = None) -> RunResult:
         """Go on from a checkpoint of this blueprint, to the same result."""
-        self._initialise(self.blueprint.values)
-        self.master.prepare()
-        put(self.master, snapshot)
-        if schedule is not None:
-            schedule.begin(self.master, self.blueprint, fresh=False)
-        return self._go(on_step, schedule)
+        with self._last_words():
+            self._initialise(self.blueprint.values)
+            self.master.prepare()
+            put(self.master, snapshot)
+            if schedule is not None:
+                schedule.begin(self.master, self.blueprint, fresh=False)
+            return self._go(on_step, schedule)
 
     def stop(self) -> None:
         """End after the present step; the result is then marked interrupted."""
@@ -103,6 +110,20 @@ class Simulation:
         except RunError as error:
             message = str(error)
         return self._result(message)
+
+    def _last_words(self) -> AbstractContextManager[None]:
+        """Where somebody takes what there is of a run when a unit hangs, he takes it when one crashes, too."""
+
+        def say(signal: str) -> None:
+            accused = self.master.watchdog.accused(signal)
+            if accused and self.master.watchdog.on_hang is not None:
+                self.master.watchdog.on_hang(accused)
+            starting = f"{FmuUnit.starting}: crashed while it was initialised ({signal}); mend the unit"
+            sys.stderr.write(f"error: {accused or starting}\n")
+            sys.stderr.flush()
+            os._exit(RunError.exit_code)
+
+        return nullcontext() if self.on_hang is None else last_words(say)
 
     def _watch(self) -> None:
         on_hang = self.on_hang

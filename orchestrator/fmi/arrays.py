@@ -57,8 +57,10 @@ def pointer(vector: Vector, offset: int) -> Any:
 
 
 def in_place(entries: Sequence[Entry], fmi_type: FmiType) -> bool:
-    """Whether these stand in the vector as FMI moves them: doubles side by side, arrays whole and in order."""
+    """Whether these stand in the vector as FMI moves them: doubles side by side, arrays whole and in order, no variable twice."""
     expected = 0
+    if len({(v.reference, v.element) for _, v in entries}) < len(entries):
+        return False
     for (place, variable), (before, _) in zip(entries, [(entries[0][0] - 1, None), *entries], strict=False):
         if place != before + 1 or variable.element != expected:
             return False

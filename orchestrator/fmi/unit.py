@@ -34,6 +34,9 @@ class FmuUnit(ABC):
     counted: ClassVar[bool]
     """Whether gets and sets are told the number of values."""
 
+    starting: ClassVar[str] = ""
+    """The unit that was last called to be initialised, whichever it was."""
+
     def __init__(self, name: str, path: Path, interface: Interface | None = None) -> None:
         self.name = name
         self.interface = interface or read_interface(path)
@@ -97,6 +100,7 @@ class FmuUnit(ABC):
         self._start_blocks()
 
     def set_up(self, start: float, stop: float, values: Mapping[str, Value]) -> None:
+        FmuUnit.starting = self.name
         self._free_slot()
         if self._used:
             self._check("reset", self._function("Reset")(self._component))
@@ -108,11 +112,13 @@ class FmuUnit(ABC):
         self._enter_initialization(start, stop)
 
     def exchange(self) -> None:
+        FmuUnit.starting = self.name
         self._send()
         self._fetch()
         self._observe()
 
     def begin(self) -> None:
+        FmuUnit.starting = self.name
         self._send()
         self._check("exitInitializationMode", self._function("ExitInitializationMode")(self._component))
         self._begun = True

@@ -31,6 +31,12 @@ class Watchdog:
     def leave(self) -> None:
         self._unit = ""
 
+    def accused(self, signal: str) -> str:
+        """After a crash of the process: who was in doStep, and when; empty where nobody was."""
+        unit, self._unit = self._unit, ""
+        what = f"crashed in doStep{self.where()} ({signal}); mend the unit, or give it isolate = true, a process of its own"
+        return f"{unit}: {what}" if unit else ""
+
     def __enter__(self) -> Watchdog:
         self._done = threading.Event()
         if self._timeout > 0.0 and self.on_hang is not None:

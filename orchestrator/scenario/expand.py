@@ -27,6 +27,11 @@ class UnitEntry:
     fmu: str
     once: bool
     parameters: dict[str, Any]
+    isolate: bool = False
+
+    def as_run(self) -> dict[str, Any]:
+        table = {"fmu": self.fmu, "once": self.once, "parameters": self.parameters}
+        return table | ({"isolate": True} if self.isolate else {})
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,7 @@ class Scenario:
     def as_run(self) -> dict[str, Any]:
         """A scenario file's content that repeats this run without `extends`, `each` or `--set`."""
         tree = self.table.model_dump(by_alias=True, exclude_none=True, exclude={"each", "units", "connections"})
-        tree["units"] = {u.name: {"fmu": u.fmu, "once": u.once, "parameters": u.parameters} for u in self.units}
+        tree["units"] = {u.name: u.as_run() for u in self.units}
         tree["connections"] = [c.as_run() for c in self.connections]
         tree["master"]["order"] = [u.name for u in self.units]
         tree["record"]["variables"] = self.record
@@ -99,7 +104,7 @@ def _unit_entries(table: ScenarioTable, template: str, where: str) -> list[UnitE
         own = table.units.get(name, unit) if chosen else unit
         if own is not unit:
             values = (values if own.fmu == unit.fmu else {}) | _values(own, name, {}, table.each, where)
-        entries.append(UnitEntry(name, own.fmu, own.once, values))
+        entries.append(UnitEntry(name, own.fmu, own.once, values, own.isolate))
     return entries
 
 

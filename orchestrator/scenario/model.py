@@ -26,6 +26,8 @@ class UnitTable(Table):
     """Name looked up in the scenario's `fmus` folder, or a path to an .fmu relative to the scenario."""
     once: bool = False
     """Step it once per accepted step, whatever it can do: sampled guidance, telemetry."""
+    isolate: bool = False
+    """In a process of its own, which it may crash: safe, and dearer by a message a call."""
     parameters: dict[str, Any] = {}
     """Number, truth value, string, list (name[1], name[2] ...), or, in a unit expanded by [each], a table of these by instance."""
 

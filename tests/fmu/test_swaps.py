@@ -2,8 +2,10 @@
 a leg of another version beside ours.
 """
 
+import re
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -125,3 +127,40 @@ def test_a_leg_of_another_version_stands_beside_ours(run: Run, tmp_path: Path) -
     assert stroke["-Y"][0] < 0.3 * stroke["-Y"][1]
     assert stroke["-Z"][0] == pytest.approx(stroke["-Z"][1], rel=0.5)
     assert stroke["-Z"][0] > 0.01
+
+
+def altered(fmu: Path, into: Path, pattern: str, replacement: str) -> Path:
+    """The FMU with another modelDescription."""
+    with zipfile.ZipFile(fmu) as old, zipfile.ZipFile(into, "w") as new:
+        for name in old.namelist():
+            content = old.read(name)
+            if name == "modelDescription.xml":
+                content, count = re.subn(pattern.encode(), replacement.encode(), content)
+                assert count
+            new.writestr(name, content)
+    return into
+
+
+FAULTY = {
+    "wrong units": (
+        r'(name="engine.force\[\d\]"[^>]*>\s*<Real )unit="N"',
+        r'\1unit="N.m"',
+        "guidance.engine.force[1] -> body.engine.force[1]: sends N.m, expects N;",
+    ),
+    "missing port": (r'name="engine\.', r'name="motor.', 'guidance.engine: unit guidance has no port "engine"; known here: '),
+    "missing input": (r'name="contact3"', r'name="touch3"', 'guidance.contact3: unit guidance has no input "contact3"; did you mean'),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTY)
+def test_a_unit_that_does_not_fit_is_one_line_that_names_unit_and_variable(run: Run, tmp_path: Path, fault: str) -> None:
+    pattern, replacement, message = FAULTY[fault]
+    fmu = altered(ROOT / "build" / "foreign" / "Gnc2.fmu", tmp_path / "faulty.fmu", pattern, replacement)
+    overlay = tmp_path / "swap.toml"
+    base = (ROOT / "scenarios" / "apollo11_zupp.toml").as_posix()
+    overlay.write_text(f'extends = "{base}"\n[units.guidance]\nfmu = "{fmu.as_posix()}"\n')
+    command = [sys.executable, "-m", "orchestrator.cli", "run", str(overlay), "--out", str(tmp_path / "out")]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=120, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"error: swap.toml: {message}")
+    assert len(done.stderr.splitlines()) == 1

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 PREAMBLE = '''
-from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
+from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Fmi2Variability, Integer, Real, String
 from pythonfmu.enums import Fmi2Status
 
 
@@ -91,6 +91,21 @@ class SampleForgetful(Sample):
         self.hidden += h
         self.v["end.force"] = -self.v["end.velocity"]
         self.v["end.count"] = self.hidden
+        return True
+''',
+    # Passes on whole numbers, truth values and text.
+    "SampleTeller": '''
+class SampleTeller(Sample):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.count, self.told, self.flag, self.seen, self.word, self.said = 0, 0, False, False, "", ""
+        given, taken = Fmi2Causality.output, Fmi2Causality.input
+        for kind, name, causality in ((Integer, "count", taken), (Integer, "told", given), (Boolean, "flag", taken),
+                                      (Boolean, "seen", given), (String, "word", taken), (String, "said", given)):
+            self.register_variable(kind(name, causality=causality, variability=Fmi2Variability.discrete))
+
+    def do_step(self, t, h):
+        self.told, self.seen, self.said = self.count + 1, not self.flag, self.word + "!"
         return True
 ''',
     # Refuses, raises or gives NaN, as its parameters say.

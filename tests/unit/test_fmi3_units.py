@@ -7,13 +7,15 @@ import pytest
 from fmi3_c_sample import c_sample3
 from fmi_samples import sample_fmus
 
+from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.errors import StepError, UnitError
 from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.load import load
+from orchestrator.fmi.texts import text_of
 from orchestrator.fmi.unit import FmuUnit
 from orchestrator.master.slave import Binding, Kind, Status, Value
 from orchestrator.scenario.parameters import start_values
-from orchestrator.simulation import run_scenario
+from orchestrator.simulation import Simulation, run_scenario
 
 INPUTS = ["u[1]", "u[2]", "u[3]", "k", "flags[2]"]
 OUTPUTS = ["y[1]", "y[2]", "x", "k_out", "any", "steps", "big_out", "mode_out", "small_out"]
@@ -67,6 +69,13 @@ def test_elements_that_nothing_feeds_keep_their_start_value() -> None:
     binding.u[1] = 1.0
     three.begin()
     assert binding.y.tolist() == [10.0, 1.0]
+    three.close()
+
+
+def test_two_names_of_one_variable_both_give_its_value() -> None:
+    three, binding = unit([], ["y[1]", "y[2]", "reading[1]", "reading[2]", "x"], 5)
+    three.begin()
+    assert binding.y.tolist() == [2.0, 4.0, 2.0, 4.0, 0.0]
     three.close()
 
 
@@ -152,6 +161,30 @@ def test_units_of_both_versions_run_side_by_side_and_repeat_their_intervals(tmp_
     assert result.columns["two.end.velocity"][-1] == pytest.approx(1.6, abs=1e-12)
     assert result.columns["three.x"][-1] == pytest.approx(0.5 * 4 * 0.16 + 5 * 0.4, abs=0.01)
     assert {r.trial.serialisation for r in result.unit_records if r.trial} == {"true"}
+
+
+TEXT = PAIR + """
+[units.last]
+fmu = "THREE"
+[[connections]]
+from = "three.said"
+to = "last.label"
+"""
+
+
+@pytest.mark.parametrize("isolate", [True, False])
+def test_text_travels_between_units_wherever_they_run(tmp_path: Path, isolate: bool) -> None:
+    path = scenario(tmp_path, TEXT)
+    changes = {"units": {"last": {"isolate": isolate}}}
+    simulation = Simulation(draw_up(read_scenario(path, ["three.label=LM", "three.mode=on"], changes), path))
+    assert simulation.run().complete
+    unit = simulation.system.slaves[2]
+    said = unit.interface.variables["said"]
+    unit.bind(Binding([], [], ["said"], 0, np.zeros(0), y := np.zeros(1)))
+    unit.observe()
+    unit.exchange()
+    simulation.close()
+    assert (said.kind, text_of(y[0])) == (Kind.STRING, "LM on off")
 
 
 def test_early_returns_are_met_by_everybody(tmp_path: Path) -> None:

@@ -71,3 +71,39 @@ def test_a_unit_that_hangs_ends_the_run_with_its_name_and_the_results_so_far(tmp
     rows = (out / "history.csv").read_text().splitlines()
     assert rows[-1].startswith("0.52")
     assert (out / "summary.json").is_file()
+
+
+ALONE = {"units": {name: {"isolate": True} for name in ("odd", "even")}}
+
+
+@pytest.mark.parametrize(
+    ("crash_from", "words", "last"),
+    [
+        (0.08, "odd: crashed in doStep at t = 0.08 s (SIGSEGV); mend the unit, or give it isolate = true", 0.08),
+        (0.0, "odd: crashed in doStep at t = 0 s (SIGSEGV)", None),
+    ],
+)
+def test_a_crash_at_the_third_step_or_in_the_trial_is_a_line(tmp_path: Path, crash_from: float, words: str, last: float | None) -> None:
+    path, out = scenario(tmp_path), tmp_path / "out"
+    setting = ("--set", f"odd.crash_from={crash_from}")
+    command = [sys.executable, "-m", "orchestrator.cli", "run", str(path), "--out", str(out), "--quiet", *setting]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, env=os.environ)
+    assert done.returncode == 3, done.stderr
+    assert done.stderr.startswith(f"error: {words}")
+    assert len(done.stderr.splitlines()) == 1
+    if last is not None:
+        assert (out / "history.csv").read_text().splitlines()[-1].startswith(str(last))
+
+
+def test_a_unit_in_a_process_of_its_own_crashes_alone_and_is_named(tmp_path: Path) -> None:
+    result = run_scenario(scenario(tmp_path), ["odd.crash_from=0.08"], ALONE)
+    assert result.message == "odd: crashed in doStep, its step 3, from t = 0.08 s: its process was ended by SIGSEGV; mend the unit"
+    assert result.times[-1] == pytest.approx(0.08)
+
+
+def test_a_unit_in_a_process_of_its_own_does_the_same_to_the_bit(tmp_path: Path) -> None:
+    beside = run_scenario(scenario(tmp_path), ["odd.wall=0.15"])
+    apart = run_scenario(scenario(tmp_path), ["odd.wall=0.15"], ALONE)
+    assert apart.columns.keys() == beside.columns.keys()
+    assert all((column == beside.columns[name]).all() for name, column in apart.columns.items())
+    assert [row.limit for row in apart.log] == [row.limit for row in beside.log]

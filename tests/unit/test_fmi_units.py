@@ -9,9 +9,11 @@ import pytest
 from fmi_samples import oscillator, sample_fmus
 
 from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.checkpoint.schedule import Schedule
 from orchestrator.errors import StepError, UnitError
 from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.slave2 import Fmi2Unit
+from orchestrator.fmi.texts import text_of
 from orchestrator.fmi.unpack import content_hash, unpack
 from orchestrator.master.slave import Binding, Status
 from orchestrator.master.system import System
@@ -161,6 +163,53 @@ def test_a_unit_that_cannot_truly_roll_back_is_stepped_once_per_accepted_step(tm
     assert record.steps == result.accepted
     assert any("damper: claims rollback" in w for w in result.warnings) == warned
     assert result.columns["damper.end.count"][-1] == pytest.approx(0.5, abs=1e-9)      # the trial left no trace
+
+
+TELLERS = """
+stop_time = 0.03
+fmus = "FMUS"
+[units.a]
+fmu = "SampleTeller"
+parameters = { count = 41, word = "contact", flag = true }
+[units.b]
+fmu = "SampleTeller"
+ONCE
+[[connections]]
+from = "a.told"
+to = "b.count"
+[[connections]]
+from = "a.seen"
+to = "b.flag"
+[[connections]]
+from = "a.said"
+to = "b.word"
+[master]
+max_interval = 0.01
+"""
+
+
+@pytest.mark.parametrize("once", ["", "once = true"])
+def test_whole_numbers_truth_values_and_text_are_set_and_connected(tmp_path: Path, once: str) -> None:
+    path = tmp_path / "tellers.toml"
+    path.write_text(TELLERS.replace("FMUS", sample_fmus().as_posix()).replace("ONCE", once))
+    simulation = Simulation(draw_up(read_scenario(path), path))
+    result = simulation.run()
+    assert result.complete, result.message
+    assert (result.columns["b.told"][-1], result.columns["b.seen"][-1]) == (43.0, 1.0)
+    teller = simulation.system.slaves[1]
+    teller.bind(Binding([], [], ["said"], 0, np.zeros(0), y := np.zeros(1)))
+    teller.exchange()
+    assert text_of(y[0]) == "contact!!"
+    simulation.close()
+
+
+def test_checkpoints_are_refused_where_text_travels(tmp_path: Path) -> None:
+    path = tmp_path / "tellers.toml"
+    path.write_text(TELLERS.replace("FMUS", sample_fmus().as_posix()).replace("ONCE", ""))
+    simulation = Simulation(draw_up(read_scenario(path), path))
+    with pytest.raises(UnitError, match=r"a\.said -> b\.word: a checkpoint cannot keep text; leave --checkpoint-every out"):
+        simulation.run(schedule=Schedule.asked(tmp_path, 0.01))
+    simulation.close()
 
 
 def test_a_unit_that_lies_about_its_rollback_is_an_error_that_names_what_differed(tmp_path: Path) -> None:
