@@ -98,8 +98,7 @@ def _clock_notes(table: ResultsTable) -> list[str]:
 
 def _published(result: RunResult, table: ResultsTable, out: Path) -> references.References:
     """The reference file beside or above the scenario, copied into the run directory; else the scenario's own `[paper]` table."""
-    above = list(result.scenario_path.resolve().parents) if result.scenario_path else []
-    path = references.find(table.references, [*above, Path("scenarios"), Path()])
+    path = references.find(table.references, result.scenario_path)
     if path is None:
         return references.parse(result.paper)
     if path.resolve() != (out / path.name).resolve():

@@ -106,9 +106,7 @@ def _annotation(contents: Contents, blueprint: Blueprint) -> dict[str, Any]:
     for key in ("fmus", "start_time", "stop_time"):
         tree.pop(key, None)
     tree["units"] = {u.name: {"once": True} for u in blueprint.scenario.units if u.once}
-    stated = tree.get("results", {}).get("references")
-    above = list(blueprint.path.resolve().parents) if blueprint.path else []
-    found = references.find(stated, above)
+    found = references.find(tree.get("results", {}).get("references"), blueprint.path)
     if found is not None:
         member = f"{RESOURCES}/{found.name}"
         contents.files[member] = found

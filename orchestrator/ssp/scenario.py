@@ -40,9 +40,9 @@ def read_system(path: Path, variant: str = "") -> Tree:
     tree["connections"] = _connections(archive, structure, interfaces, wires, own.get("connections"))
     if not own:
         tree["master"] = _steps(archive)
-    references = own.get("results", {}).get("references")
-    if references:
-        tree["results"] = own["results"] | {"references": str(archive.file(references, "results.references"))}
+    references = archive.folder / own.get("results", {}).get("references", "")
+    if references.is_file():
+        tree["results"] = own["results"] | {"references": str(references)}
     return tree
 
 
