@@ -57,9 +57,13 @@ def parse(data: Mapping[str, Any]) -> References:
     return References(titles=titles, strokes=strokes, sections=sections, source=table.get("source", ""))
 
 
-def find(name: str | None, scenario: Path | None) -> Path | None:
-    """The reference file beside or above the scenario, else in `scenarios` or here; an absolute name needs no folder."""
+def find(name: str | None, folders: list[Path]) -> Path | None:
+    """The reference file in the first of the folders that has it; an absolute name needs no folder."""
     if name is None:
         return None
-    above = list(scenario.resolve().parents) if scenario else []
-    return next((path for folder in (*above, Path("scenarios"), Path()) if (path := folder / name).is_file()), None)
+    return next((path for folder in folders if (path := folder / name).is_file()), None)
+
+
+def folders_of(scenario: Path | None) -> list[Path]:
+    """Where the reference file of a scenario may be: beside or above it, in `scenarios`, here."""
+    return [*(scenario.resolve().parents if scenario else ()), Path("scenarios"), Path()]

@@ -98,7 +98,7 @@ def _clock_notes(table: ResultsTable) -> list[str]:
 
 def _published(result: RunResult, table: ResultsTable, out: Path) -> references.References:
     """The reference file beside or above the scenario, copied into the run directory; else the scenario's own `[paper]` table."""
-    path = references.find(table.references, result.scenario_path)
+    path = references.find(table.references, references.folders_of(result.scenario_path))
     if path is None:
         return references.parse(result.paper)
     if path.resolve() != (out / path.name).resolve():

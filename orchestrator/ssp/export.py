@@ -106,7 +106,7 @@ def _annotation(contents: Contents, blueprint: Blueprint) -> dict[str, Any]:
     for key in ("fmus", "start_time", "stop_time"):
         tree.pop(key, None)
     tree["units"] = {u.name: {"once": True} for u in blueprint.scenario.units if u.once}
-    found = references.find(tree.get("results", {}).get("references"), blueprint.path)
+    found = references.find(tree.get("results", {}).get("references"), references.folders_of(blueprint.path))
     if found is not None:
         member = f"{RESOURCES}/{found.name}"
         contents.files[member] = found
