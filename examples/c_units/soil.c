@@ -87,6 +87,7 @@ const char* unit_step(double v[VALUES], double time, double step) {
     const double *x0 = v + PAD_POSITION, *v0 = v + PAD_VELOCITY, *base = v + PAD_MODEL_BASE_VELOCITY;
     const double* accelerated = v + PAD_MODEL_BASE_ACCELERATION;
     double n[3], matrix[9], solve[9], before[3], impulse[3] = {0.0, 0.0, 0.0};
+    if (!(step > 0.0)) return "the step is not positive";
     int count = (int)ceil(step / v[LONGEST_SUBSTEP]);
     double h = step / count;
     Pad pad;

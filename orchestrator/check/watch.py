@@ -17,6 +17,8 @@ from orchestrator.check.finding import Finding, Verdict
 
 _LOOKS = 0.02
 """s between two looks at the process."""
+_START = 60.0
+"""s at least until the process says its first word: Python's own start is not the unit's."""
 _MOST_CRASHES = 4
 _PROBE = "probe "
 
@@ -79,7 +81,7 @@ def _wait(process: subprocess.Popen[bytes], said: Path, timeout: float) -> str:
         now = said.stat().st_size
         if now != size:
             size, since = now, monotonic()
-        elif monotonic() - since > timeout:
+        elif monotonic() - since > (timeout if size else max(timeout, _START)):
             process.kill()
             process.wait()
             return f"hung for {timeout:g} s"

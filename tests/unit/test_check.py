@@ -14,7 +14,7 @@ FAULTS = {
     "other unit": ("units of measure", "rates.yaw", "is in m/s, the contract has rad/s"),
     "other frame": ("frames", "rates.yaw", 'is in frame "L" by its description, the contract has "B"'),
     "crash": ("runs", "", "crashed (signal 11, SIGSEGV) at step 4 of"),
-    "hang": ("runs", "", "hung for 2 s at step 4 of"),
+    "hang": ("runs", "", "hung for 5 s at step 4 of"),
     "exit": ("runs", "", "ended with exit code 7 at step 4 of"),
     "error": ("runs", "", "doStep returned Error"),
     "clock": ("determinism", "", "other bits"),
@@ -29,7 +29,7 @@ FAULTS = {
 def ran(fmu: Path, folder: Path, *options: str) -> tuple[int, str, list[dict[str, str]]]:
     """Exit code, standard error, findings."""
     report = folder / "report.json"
-    command = [sys.executable, "-m", "orchestrator.cli", "check", str(fmu), "--json", str(report), "--timeout", "2", *options]
+    command = [sys.executable, "-m", "orchestrator.cli", "check", str(fmu), "--json", str(report), "--timeout", "5", *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     findings = json.loads(report.read_text())["findings"] if report.exists() else []
     return done.returncode, done.stderr, findings
