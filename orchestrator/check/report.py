@@ -11,12 +11,14 @@ from rich.text import Text
 from orchestrator.check.check import Checked
 from orchestrator.check.finding import Finding, Verdict
 
+_FIRST = {Verdict.FAIL: 0, Verdict.WARN: 1}
+"""What asks for something to be done stands on top."""
 _COLOURS = {Verdict.PASS: "green", Verdict.NOTE: "dim", Verdict.WARN: "yellow", Verdict.FAIL: "bold red"}
 
 
 def table(result: Checked) -> RenderableType:
     rows = Table("check", "", "found", "what to do", box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for finding in result.findings:
+    for finding in sorted(result.findings, key=lambda one: _FIRST.get(one.verdict, 2)):
         where = f"{finding.where}: " if finding.where and finding.where not in finding.found else ""
         verdict = Text(finding.verdict, style=_COLOURS[finding.verdict])
         rows.add_row(finding.check, verdict, Text(where + finding.found), Text(finding.do))
@@ -32,7 +34,9 @@ def headline(result: Checked) -> str:
 
 def tally(result: Checked) -> str:
     counts = {verdict: sum(f.verdict is verdict for f in result.findings) for verdict in Verdict}
-    return f"{counts[Verdict.PASS]} passed, {counts[Verdict.WARN]} warnings, {counts[Verdict.FAIL]} failed, {counts[Verdict.NOTE]} notes"
+    many = {verdict: "" if count == 1 else "s" for verdict, count in counts.items()}
+    warned, noted = f"{counts[Verdict.WARN]} warning{many[Verdict.WARN]}", f"{counts[Verdict.NOTE]} note{many[Verdict.NOTE]}"
+    return f"{counts[Verdict.PASS]} passed, {warned}, {counts[Verdict.FAIL]} failed, {noted}"
 
 
 def as_json(result: Checked) -> dict[str, Any]:
