@@ -2,6 +2,7 @@
 
     Gnc2.fmu, Gnc3.fmu     guidance, FMI 2.0 and 3.0 from one source
     Soil2.fmu              regolith without rollback (canGetAndSetFMUstate is false)
+    Sensor3.fmu            rate gyro in degrees a second, FMI 3.0
 
 Takes a C compiler (gcc, or what CC names) and FMI's headers, which come with FMPy. A unit of your own: a table in tables.py, a C file
 with unit_start and unit_step (unit.h), and a line in UNITS.
@@ -15,10 +16,15 @@ from pathlib import Path
 
 from c_library import compile_library, pack
 from description import model_description, places, terminals
-from tables import GNC, SOIL, Table
+from tables import GNC, SENSOR, SOIL, Table
 
 HERE = Path(__file__).resolve().parent
-UNITS = (("Gnc2", "gnc.c", GNC, 2, True), ("Gnc3", "gnc.c", GNC, 3, True), ("Soil2", "soil.c", SOIL, 2, False))
+UNITS = (
+    ("Gnc2", "gnc.c", GNC, 2, True),
+    ("Gnc3", "gnc.c", GNC, 3, True),
+    ("Soil2", "soil.c", SOIL, 2, False),
+    ("Sensor3", "sensor.c", SENSOR, 3, True),
+)
 """Name, source, variables, FMI, whether its state can be kept."""
 
 

@@ -1,5 +1,6 @@
 """What the units in C declare: every variable once, for modelDescription.xml of FMI 2.0 and 3.0 and for the C source."""
 
+from math import pi
 from typing import NamedTuple
 
 POWERS = {
@@ -12,6 +13,8 @@ POWERS = {
     "N.m": {"kg": 1, "m": 2, "s": -2},
     "N/m": {"kg": 1, "s": -2},
     "N/s": {"kg": 1, "m": 1, "s": -3},
+    "deg/s": {"rad": 1, "s": -1, "factor": pi / 180},
+    "deg/s2": {"rad": 1, "s": -2, "factor": pi / 180},
     "kg": {"kg": 1},
     "m": {"m": 1},
     "m/s": {"m": 1, "s": -1},
@@ -20,7 +23,7 @@ POWERS = {
     "rad/s": {"rad": 1, "s": -1},
     "s": {"s": 1},
 }
-"""Units of measure by exponents of the base units."""
+"""Units of measure by exponents of the base units, with the factor to SI where it is not 1."""
 
 
 class Variable(NamedTuple):
@@ -122,5 +125,22 @@ SOIL = Table(
         Variable("output", "contact", "Boolean", "whether the base's centre is in the soil"),
         Variable("local", "deepest", "m", "greatest depth so far"),
         Variable("local", "slide", "m", "of the base's centre in the soil, frame L", ZERO),
+    ),
+)
+
+SENSOR = Table(
+    "Rate gyro in degrees a second with a first-order lag.",
+    "RateSensor",
+    (
+        Variable("parameter", "time_constant", "s", "of the lag", 0.05),
+        *(
+            variable
+            for axis in AXES
+            for variable in (
+                Variable("input", f"rates.{axis}", "deg/s", f"true {axis} rate, frame B"),
+                Variable("input", f"rates.{axis}_slope", "deg/s2", f"slope of rates.{axis} over the coming interval"),
+            )
+        ),
+        *(Variable("output", f"telemetry.{axis}", "deg/s", f"received {axis} rate") for axis in AXES),
     ),
 )

@@ -129,6 +129,33 @@ def test_a_leg_of_another_version_stands_beside_ours(run: Run, tmp_path: Path) -
     assert stroke["-Z"][0] > 0.01
 
 
+@pytest.mark.slow
+def test_a_sensor_in_c_that_knows_degrees_receives_what_ours_does(run: Run) -> None:
+    """The same lag; rad/s and rad/s2 of the body become deg/s and deg/s2 on the way. Tolerance: rounding."""
+    gyro = {"units": {"sensor": {"fmu": str(ROOT / "build" / "foreign" / "Sensor3.fmu"), "parameters": {"time_constant": 0.05}}}}
+    foreign, ours = run("apollo11_zupp", stop_time=1.0, **gyro), run("apollo11_zupp", "sensor.time_constant=0.05", stop_time=1.0)
+    assert foreign.trusted, foreign.message
+    assert foreign.units["sensor.telemetry.yaw"] == "deg/s"
+    for axis in ("yaw", "pitch", "roll"):
+        name = f"sensor.telemetry.{axis}"
+        assert np.radians(foreign.columns[name]) == pytest.approx(ours.columns[name], abs=1e-13)
+
+
+@pytest.mark.slow
+def test_a_body_of_another_version_flies_on_our_legs(run: Run, tmp_path: Path) -> None:
+    """Nothing of the base's table stays: with its own gravity of 1.0 m/s2, stated nowhere, it lands softer."""
+    source = (PACKAGE / "units" / "vehicle_body.py").read_text()
+    light = source.replace('parameter("gravity", 1.63', 'parameter("gravity", 1.0')
+    assert light != source
+    other = packed_from(package_with(tmp_path, vehicle_body=light), "vehicle_body")
+    start = {"velocity_start": [-0.573, -0.6147, -0.213], "yaw_start": 0.26337, "pitch_start": 0.016459, "roll_start": 0.044419}
+    changed = {"units": {"body": {"fmu": str(other), "parameters": start | {"rates_start": [-0.0108, 0.0, -0.05]}}}}
+    plain, swapped = run("apollo11_zupp", stop_time=1.0), run("apollo11_zupp", stop_time=1.0, **changed)
+    assert swapped.trusted, swapped.message
+    depth = {name: [r.columns[f"soil{leg}.penetration"][-1] for leg in LEGS] for name, r in (("plain", plain), ("light", swapped))}
+    assert sum(depth["light"]) < 0.9 * sum(depth["plain"])
+
+
 def altered(fmu: Path, into: Path, pattern: str, replacement: str) -> Path:
     """The FMU with another modelDescription."""
     with zipfile.ZipFile(fmu) as old, zipfile.ZipFile(into, "w") as new:
