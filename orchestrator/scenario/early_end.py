@@ -13,9 +13,9 @@ from orchestrator.scenario.record import matching_outputs
 def bounds_of(table: UntilTable | None, interfaces: Mapping[str, Interface], where: str) -> list[Bound]:
     """One for each output that a glob matches."""
     return [
-        Bound(unit, name, limit, below)
-        for below, limits in ((True, table.below), (False, table.above))
+        Bound(unit, name, limit, below=key == "below", alone=key == "beyond")
+        for key, limits in (("below", table.below), ("above", table.above), ("beyond", table.beyond))
         for pattern, limit in limits.items()
-        for unit, names in enumerate(matching_outputs([pattern], interfaces, f"{where}.{'below' if below else 'above'}"))
+        for unit, names in enumerate(matching_outputs([pattern], interfaces, f"{where}.{key}"))
         for name in names
     ] if table is not None else []

@@ -112,10 +112,12 @@ class UntilTable(Table):
     """Globs over outputs -> what their magnitude must be below, each element for itself."""
     above: dict[str, Positive] = {}
     """... and what it must not be below; a Boolean that is true counts 1."""
+    beyond: dict[str, Positive] = {}
+    """... and what ends the run at once where a single one is not below it: the vehicle lies on its side, for instance."""
 
     @model_validator(mode="after")
     def _says_something(self) -> UntilTable:
-        if not self.below and not self.above:
+        if not self.below and not self.above and not self.beyond:
             raise ValueError("holds no condition; add below or above")
         return self
 
