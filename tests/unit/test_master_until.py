@@ -62,3 +62,21 @@ def test_conditions_on_nothing_are_refused(tmp_path: Path) -> None:
         read_scenario(path, changes={"until": {"hold": 0.1}})
     with pytest.raises(ScenarioError, match=r'until.below: "spring.strech" matches no output; did you mean "spring.stretch"'):
         draw_up(read_scenario(path, changes={"until": {"hold": 0.1, "below": {"spring.strech": 1.0}}}), path)
+
+
+def test_what_ends_a_run_alone_waits_for_nothing() -> None:
+    now = np.zeros(2)
+    board = SimpleNamespace(now=now, start_at=lambda unit, name: ("speed", "contact").index(name))
+    until = Until(board, [CALM, TOUCHING, Bound(0, "speed", 5.0, below=False, alone=True)], 20)     # type: ignore[arg-type]
+    assert told(until, now, [(0, 4.9, 0.0), (10, -5.1, 0.0)]) == [False, True]
+
+
+def test_a_run_ends_at_once_beyond_a_bound_that_stands_alone(tmp_path: Path) -> None:
+    path = oscillator(tmp_path)
+    whole = run_scenario(path)
+    name, column = next((name, column) for name, column in whole.columns.items() if name.endswith("stretch"))
+    limit = 0.5 * float(np.abs(column).max())
+    ended = run_scenario(path, changes={"until": {"hold": 9.0, "beyond": {name: limit}}})
+    assert ended.complete
+    assert abs(ended.columns[name][-1]) >= limit
+    assert (np.abs(ended.columns[name][:-1]) < limit).all()
