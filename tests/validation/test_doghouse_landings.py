@@ -64,9 +64,9 @@ SMALL = {
     "motion_deg = [0.0, 90.0, 180.0]": "motion_deg = [180.0]",
     "tilt_toward_deg = [0.0, 90.0, 180.0, 270.0]": "tilt_toward_deg = [90.0]",
     "friction = [0.33, 10.0]": "friction = [10.0]",
-    "rays_deg = [0.0, 21.0, 29.745, 58.0, 78.0]": "rays_deg = [58.0]",
+    "rays_deg = [0.0, 21.0, 29.745, 58.0]": "rays_deg = [58.0]",
     "bracket_m_s = 0.02": "bracket_m_s = 0.2",
-    "landings = 100": "landings = 2",
+    "landings = 60": "landings = 2",
     'scenario = "': f'scenario = "{SCENARIOS}/',
 }
 
