@@ -12,7 +12,7 @@ from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.effects import Effect
 from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.measured import Measured, read_measured
-from orchestrator.diagnosis.observation import ORIGIN, Observation, Reading, Track
+from orchestrator.diagnosis.observation import ORIGIN, Observation, Reading, Track, of_units
 from orchestrator.diagnosis.problem import Landings, Model
 from sealed.truth import STOP, final_columns
 from sealed.vehicle import Known, Vehicle
@@ -36,8 +36,7 @@ class Handed:
         free = {c.name for c in coordinates}
         still = [c for c in self.nuisances if c.name not in free]
         base = {**self.vehicle.base, **self.vehicle.values(still, np.zeros(len(still)), effect)}
-        own = {name: value for name, value in base.items() if not name.startswith(("clock.", "time."))}
-        return Model(Landings([self.observation], [own], [STOP]), coordinates, self.lander)
+        return Model(Landings([self.observation], [of_units(base)], [STOP]), coordinates, self.lander)
 
     def _first_contact(self) -> float:
         """Of one landing at the prior mean, moved along the data's clock."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from orchestrator.diagnosis.effects import Effect
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, SPIN, Course
+from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.recorded import column
 from orchestrator.errors import OrchestratorError
@@ -35,7 +36,7 @@ def final_columns(vehicle: Vehicle) -> dict[str, str]:
 
 def fly(vehicle: Vehicle, values: Mapping[str, float], effects: tuple[Effect, ...], path: Path) -> Course | None:
     """The landing with these values of the twin's variables (others as in the scenario)."""
-    own = {name: value for name, value in values.items() if not name.startswith(("clock.", "time."))}
+    own = of_units(values)
     return _by_twin(vehicle, own) if path == "twin" else _by_units(vehicle, own, effects)
 
 

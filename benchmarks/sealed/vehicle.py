@@ -18,6 +18,7 @@ from orchestrator.diagnosis.effects import Effect, load_library
 from orchestrator.diagnosis.landing import TwinLander
 from orchestrator.diagnosis.observation import ORIGIN
 from orchestrator.diagnosis.places import LEGS
+from orchestrator.diagnosis.starts import number_of
 from orchestrator.diagnosis.twin_parameters import twin_parameters
 from orchestrator.simulation import draw_up, read_scenario
 
@@ -129,4 +130,4 @@ class Vehicle:
         interface = self.addresses.library("RateSensor" if name.startswith("sensor.") else "LunarLander")
         if interface is None:
             raise ValueError(f"{self.folder}: holds no LunarLander and RateSensor; run build_fmus.py")
-        return float(str(interface.variables[name.removeprefix("sensor.")].start or 0.0))
+        return number_of(interface.variables[name.removeprefix("sensor.")].start)

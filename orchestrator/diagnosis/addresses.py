@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from orchestrator.blueprint import Blueprint
 from orchestrator.diagnosis.places import CLOCK, LEGS, ONE_FOR_EACH, PLACES, SHORT, TWIN, Address, parse, spelt_out
+from orchestrator.diagnosis.starts import number_of
 from orchestrator.errors import AddressError, nearest
 from orchestrator.fmi.description import read_interface
 from orchestrator.master.slave import Interface, Kind, Variable
@@ -210,13 +211,13 @@ class Addresses:
         names = list(self.blueprint.interfaces)
         if slot.unit in names:
             given = self.blueprint.values[names.index(slot.unit)].get(slot.variable)
-            return _number(given) if given is not None else self.start(slot.unit, slot.variable)
+            return number_of(given) if given is not None else self.start(slot.unit, slot.variable)
         interface = self.library(PLACES[slot.unit])
-        return _number(interface.variables[slot.variable].start if interface else None)
+        return number_of(interface.variables[slot.variable].start if interface else None)
 
     def start(self, unit: str, variable: str) -> float:
         """The unit's own start value of a variable."""
-        return _number(self.blueprint.interfaces[unit].variables[variable].start)
+        return number_of(self.blueprint.interfaces[unit].variables[variable].start)
 
 
 def known_addresses(addresses: Addresses) -> list[str]:
@@ -234,8 +235,3 @@ def _settable(interface: Interface, name: str, element: int | None) -> list[str]
     found: Sequence[Variable] = interface.vectors.get(name, ())
     chosen = [it.name for it in found if it.causality in SETTABLE and (element is None or it.name == f"{name}[{element}]")]
     return chosen or None
-
-
-def _number(value: object) -> float:
-    text = str(value).lower()
-    return float({"true": "1", "false": "0", "none": "0"}.get(text, text))

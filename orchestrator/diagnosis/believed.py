@@ -9,7 +9,8 @@ from orchestrator.diagnosis.coordinates import applied
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.from_twin import said_by_address
-from orchestrator.diagnosis.moves import SEEN, Applied
+from orchestrator.diagnosis.moves import Applied
+from orchestrator.diagnosis.observation import SEEN
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.proof import Belief
 

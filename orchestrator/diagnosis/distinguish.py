@@ -20,9 +20,8 @@ from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.likeness import Flown, Signature, cosines, groups, signature
 from orchestrator.diagnosis.measured import read_measured
 from orchestrator.diagnosis.more_sensors import SENSORS, Equipped, Sensor, equipped
-from orchestrator.diagnosis.problem import Model
+from orchestrator.diagnosis.problem import Model, Nobody
 from orchestrator.diagnosis.report.distinction import ENOUGH, Distinction, EffectSeen, MoreSensor
-from orchestrator.diagnosis.search import Nobody
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.stages import align
 from orchestrator.diagnosis.tasks import Predict, Slopes

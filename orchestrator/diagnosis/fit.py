@@ -135,7 +135,7 @@ def fitted(
         promised = _objective(residual, z, temper) - _objective(residual - jacobian @ step, z + step, temper)
         if promised < ENOUGH:
             break
-        made = _made(model, z, predicted, slopes, step, _objective(residual, z, temper), temper, promised)
+        made = _made(model, z, predicted, residual, slopes, step, temper, promised)
         gained = 0.0
         if made is not None:
             gained = _objective(residual, z, temper) - _objective(made[2], made[0], temper)
@@ -148,19 +148,20 @@ def fitted(
                     break
                 continue
             renewals -= 1
-            slopes[:, list(renew)] = model.slopes(z, predicted, renew)
+            slopes[:, list(renew)] = model.slopes(z, predicted, renew, slopes)
     return seen_from(model, z, predicted, slopes)
 
 
 def _made(
-    model: Model, z: Array, predicted: Array, slopes: Array, step: Array, now: float, temper: float, promised: float
+    model: Model, z: Array, predicted: Array, before: Array, slopes: Array, step: Array, temper: float, promised: float
 ) -> tuple[Array, Array, Array] | None:
-    """The step, or a part of it, that lowers φ: point, prediction, residual. Whatever was flown teaches the slopes."""
+    """The step, or a part of it, that lowers φ: point, prediction, residual. What was flown teaches the slopes; before: the residual."""
+    now = _objective(before, z, temper)
     for _ in range(TRIES if promised > CHANCE else 1):
         there = model.predict(z + step)
         if there is not None:
             residual = model.residual(there)
-            if float(np.linalg.norm(residual - model.residual(predicted))) > FELT:  # a smaller change is mostly the integrator's
+            if float(np.linalg.norm(residual - before)) > FELT:  # a smaller change is mostly the integrator's
                 broyden(slopes, step, there - predicted)
             if _objective(residual, z + step, temper) < now:
                 return z + step, there, residual
@@ -172,7 +173,7 @@ def refined(model: Model, fit: Fit, which: Sequence[int], steps: int = 4) -> Fit
     """The fit with the columns `which` of its slopes made anew at its point, taken on from there, and again if it moved far."""
     for _ in range(2):
         start, slopes = fit.z, fit.slopes.copy()
-        slopes[:, list(which)] = model.slopes(fit.z, fit.predicted, which)
+        slopes[:, list(which)] = model.slopes(fit.z, fit.predicted, which, slopes)
         better = fitted(model, fit.z, slopes, fit.predicted, steps=steps)
         fit = better if better is not None else fit
         if float(np.abs(fit.z - start).max(initial=0.0)) < 0.3:

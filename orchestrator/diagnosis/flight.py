@@ -14,6 +14,7 @@ from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.landing import RATES, SPIN, Course
+from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.places import PLACES
 from orchestrator.diagnosis.recorded import cosimulation_column
@@ -26,7 +27,6 @@ from orchestrator.scenario.read import Tree, merge
 
 TELEMETRY = tuple(name.replace("rates", "telemetry") for name in RATES)
 PEAK = "peak."
-_NO_UNIT_S = ("clock.", "time.")
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class CoSimulation:
         self, values: Mapping[str, ArrayLike], inserts: Sequence[Insert] = (), stop: float | None = None, settings: Tree | None = None
     ) -> Blueprint:
         """The scenario with these values, checked again."""
-        own = {name: value for name, value in values.items() if not name.startswith(_NO_UNIT_S)}
+        own = of_units(values)
         slots = {name: float(np.asarray(value).ravel()[0]) for name, value in own.items() if self._is_slot(name)}
         by_address = {name: value for name, value in own.items() if name not in slots}
         tree = merge(overlay(self.addresses, by_address, inserts), settings or {})

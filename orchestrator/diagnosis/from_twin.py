@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from orchestrator.diagnosis.addresses import Addresses
-from orchestrator.diagnosis.moves import SEEN, Applied
+from orchestrator.diagnosis.moves import Applied
+from orchestrator.diagnosis.observation import SEEN
 from orchestrator.diagnosis.places import LEGS, PLACES, parse
 from orchestrator.errors import AddressError
 from orchestrator.master.slave import stem

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from orchestrator.diagnosis.starts import number_of
 from orchestrator.errors import OrchestratorError, StepError
 from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.slave2 import Fmi2Unit
@@ -57,7 +58,7 @@ class TwinLander:
         self.unit = Fmi2Unit("lander", lander, read_interface(lander))
         self.sensor = Fmi2Unit("sensor", sensor, read_interface(sensor))
         self.bound: tuple[tuple[str, ...], tuple[str, ...]] | None = None
-        self.starts = {name: _number(v.start) for name, v in self.unit.interface.variables.items()}
+        self.starts = {name: number_of(v.start) for name, v in self.unit.interface.variables.items()}
         legs = [name for name in self.unit.interface.variables if name.startswith("soil") and name.endswith(".gap")]
         self.gaps = tuple(legs)
         self._bind_sensor()
@@ -132,14 +133,14 @@ class TwinLander:
         names = [f"telemetry.{axis}" for axis in AXES]
         rates = np.column_stack([course[name] for name in RATES])
         variables = self.sensor.interface.variables
-        if all(_number(variables[name].start) == value for name, value in values.items()):
+        if all(number_of(variables[name].start) == value for name, value in values.items()):
             return dict(zip(names, rates.T, strict=True))
         fine = _subdivided(grid)
         known = [CubicHermiteSpline(grid, course[rate], course[spin]) for rate, spin in zip(RATES, SPIN, strict=True)]
         rates = np.column_stack([curve(fine) for curve in known])
         received = np.empty_like(rates)
         self.sensor_in[:3], self.sensor_in[3:] = rates[0], 0.0
-        self.sensor.set_up(float(fine[0]), float(fine[-1]), {n: v for n, v in values.items() if v != _number(variables[n].start)})
+        self.sensor.set_up(float(fine[0]), float(fine[-1]), {n: v for n, v in values.items() if v != number_of(variables[n].start)})
         self.sensor.exchange()
         self.sensor.begin()
         received[0] = self.sensor_out
@@ -151,14 +152,6 @@ class TwinLander:
             received[i + 1] = self.sensor_out
         received = received[::PARTS]
         return dict(zip(names, received.T, strict=True))
-
-
-def _number(start: str | None) -> float:
-    """A start value as the model description writes it."""
-    try:
-        return float(start or 0.0)
-    except ValueError:
-        return float(start == "true")
 
 
 def _subdivided(grid: Array) -> Array:

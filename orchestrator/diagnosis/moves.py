@@ -14,12 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from orchestrator.diagnosis.addresses import Addresses, Slot
 from orchestrator.diagnosis.effects.effect import Effect
+from orchestrator.diagnosis.observation import SEEN
 from orchestrator.diagnosis.outcome import Estimate
 from orchestrator.errors import AddressError
 
 Array = NDArray[np.float64]
-SEEN = ("clock.", "time.")
-"""Begin of what belongs to the data's clocks and not to a unit."""
 
 
 @dataclass(frozen=True)

@@ -8,17 +8,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, SPIN, Course
-from orchestrator.diagnosis.noise import Noise, Whitening
+from orchestrator.diagnosis.noise import Noise, Whitening, typical_interval
 
 Array = NDArray[np.float64]
+Kept = TypeVar("Kept")
 ORIGIN = "time.origin"
 CLOCK = "clock."
+SEEN = (CLOCK, "time.")
+"""Begin of what belongs to the data's clocks and not to a unit."""
 FILL = 0.02  # s: the search's own grid between the samples
 CLOSE = 1e-3  # s: samples closer than this share a point of the grid
 SHARPEST = 1e-6  # SI: of an end at zero
@@ -70,7 +74,7 @@ class Observation:
         self.tracks, self.readings = tuple(tracks), tuple(readings)
         self.shift = 0.0
         """s: time of the data at first contact, as first guessed; a coordinate refines it."""
-        self.set_noise([Noise(t.sigma, t.colour or 0.0, _interval(t.times)) for t in self.tracks])
+        self.set_noise([Noise(t.sigma, t.colour or 0.0, typical_interval(t.times)) for t in self.tracks])
         peaks = [r.column for r in self.readings if r.kind == "peak"]
         self.columns = tuple(dict.fromkeys(c for c in (*(t.column for t in self.tracks), *peaks) if not c.startswith("telemetry.")))
         self.final = tuple(dict.fromkeys(r.column for r in self.readings if r.kind != "peak"))
@@ -149,6 +153,11 @@ class Observation:
         return sampled(course, track.column, track.times - self.late(track, values))
 
 
+def of_units(values: Mapping[str, Kept]) -> dict[str, Kept]:
+    """The values without those that only the data's clocks know."""
+    return {name: value for name, value in values.items() if not name.startswith(SEEN)}
+
+
 def thinned(instants: Array) -> Array:
     """Rising instants without those that follow the last one kept within CLOSE; the first and the last stay."""
     if bool((np.diff(instants) > CLOSE).all()):
@@ -195,7 +204,3 @@ def _weight(reading: Reading, value: float) -> float:
 def _places(sizes: Sequence[int]) -> list[slice]:
     ends = np.cumsum([0, *sizes]).tolist()
     return [slice(a, b) for a, b in pairwise(ends)]
-
-
-def _interval(times: Array) -> float:
-    return float(np.median(np.diff(times))) if len(times) > 1 else 1.0

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate, applied
 from orchestrator.diagnosis.landing import Lander
-from orchestrator.diagnosis.observation import Observation
+from orchestrator.diagnosis.observation import Observation, of_units
 
 Array = NDArray[np.float64]
 FELT = 3.0  # standard deviations over all rows: six times what the integrator leaves to chance
@@ -75,10 +75,13 @@ class Model:
         pairs = zip(self.landings.observations, self.landings.parts, strict=True)
         return np.asarray(np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None])
 
-    def slope(self, i: int, z: Array, predicted: Array) -> Array:
-        """Derivative of the prediction by z_i, by a difference that is felt: by FELT standard deviations in all, or z = WIDEST."""
+    def slope(self, i: int, z: Array, predicted: Array, first: float) -> Array:
+        """Derivative of the prediction by z_i, by a difference that is felt: by FELT standard deviations in all, or z = WIDEST.
+
+        first: the difference to try first.
+        """
         low, high = self.coordinates[i].bounds
-        step = self.coordinates[i].step
+        step = first
         slope = np.zeros(len(predicted))
         while True:
             sign = -1.0 if z[i] + step > high and z[i] - step >= low else 1.0
@@ -98,10 +101,17 @@ class Model:
         there = self.predict(moved, (z, predicted))
         return None if there is None else (there - predicted) / step
 
-    def slopes(self, z: Array, predicted: Array, which: Sequence[int] | None = None) -> Array:
-        """(n, m): derivatives of the prediction by `which` coordinates, all without."""
+    def slopes(self, z: Array, predicted: Array, which: Sequence[int] | None = None, like: Array | None = None) -> Array:
+        """(n, m): derivatives of the prediction by `which` coordinates, all without.
+
+        like: (n, coordinates) slopes from somewhere near, which tell how large a difference will be felt.
+        """
         chosen = range(len(self.coordinates)) if which is None else which
-        columns = [self.slope(i, z, predicted) for i in chosen]
+        first = [c.step for c in self.coordinates]
+        if like is not None:
+            felt = np.linalg.norm(self.whitened(like, predicted), axis=0)
+            first = [max(s, min(WIDEST, 1.2 * FELT / max(f, 1e-9))) for s, f in zip(first, felt.tolist(), strict=True)]
+        columns = [self.slope(i, z, predicted, first[i]) for i in chosen]
         return np.stack(columns, axis=1) if columns else np.zeros((len(predicted), 0))
 
     def values(self, z: Array, landing: int) -> dict[str, float]:
@@ -114,12 +124,21 @@ class Model:
     def _landed(self, k: int, z: Array) -> Array | None:
         observation = self.landings.observations[k]
         values = self.values(z, k)
-        own = {name: v for name, v in values.items() if not name.startswith(("clock.", "time."))}
         grid = observation.grid(self.landings.stop[k], values, self.horizon)
-        course = self.lander.land({**self.landings.bases[k], **own}, grid, observation.columns, observation.final)
+        course = self.lander.land({**self.landings.bases[k], **of_units(values)}, grid, observation.columns, observation.final)
         if course is None or not all(np.isfinite(c).all() for c in course.columns.values()):
             return None
         return observation.predicted(course, values)
 
 
-__all__ = ["Landings", "Model"]
+class Nobody:
+    """A lander for arithmetic that flies nothing."""
+
+    def land(self, *_: object) -> None:
+        return None
+
+    def close(self) -> None:
+        return None
+
+
+__all__ = ["Landings", "Model", "Nobody"]

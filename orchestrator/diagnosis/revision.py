@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.effects.effect import Insert
-from orchestrator.diagnosis.moves import SEEN, Applied, Move, Named, applied_moves, sigma_of
+from orchestrator.diagnosis.moves import Applied, Move, Named, applied_moves, sigma_of
+from orchestrator.diagnosis.observation import SEEN
 from orchestrator.diagnosis.overlay import Change, write_overlay
 from orchestrator.scenario.read import Tree
 

@@ -10,26 +10,23 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from orchestrator.diagnosis.climb import Path, climbed, distinct
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
-from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, joined
-from orchestrator.diagnosis.problem import Landings, Model
-from orchestrator.diagnosis.tasks import Climb, FitAt, Point, Predict, Probe, Refine, Slopes
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.problem import Landings, Model, Nobody
+from orchestrator.diagnosis.race import Runner, raced
+from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
 """Called with the stage, the best hypothesis so far, and the share of the stage done."""
 HORIZONS = (0.3, 0.55, 0.8, 1.2)  # s since first contact, before the whole
 DRAWS = 100  # of the nuisances from their priors, flown to the first horizon
-CLIMBS = 2  # from the best of them
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
-SECONDS = 6  # second effects fitted beside a first
-PRUNE = 25.0  # of φ at a horizon: who is further behind the best is not flown on
-LEAST = 6  # hypotheses that are flown on all the same
-ALIKE = 8.0  # of φ: two starts of one hypothesis are both flown on within this
 
 
 class UnflyableError(Exception):
@@ -57,26 +54,29 @@ class Search:
         self.told = told or (lambda stage, best, share: None)
         self.leader = ""
         """The best hypothesis so far, for whoever waits."""
-        self.path: tuple[Point, ...] = ()
-        self.ends: tuple[Fit, ...] = ()
+        self.path: Path = ()
+        """The best climb of the base scenario."""
+        self.beginnings: tuple[Array, ...] = ()
+        """Ends of the climbs at the first horizon, best first."""
 
     def _adds(self, horizon: float) -> bool:
-        counts = sorted(sum(float(o.weights(h).sum()) for o in self.landings.observations) for h in (0.0, *HORIZONS))
-        here = sum(float(o.weights(horizon).sum()) for o in self.landings.observations)
-        below = [c for c in counts if c < here]
-        return here < self.landings.size and bool(below) and here - max(below) >= FEW
+        below = [c for c in (self._counted(h) for h in (0.0, *HORIZONS)) if c < self._counted(horizon)]
+        return self._counted(horizon) < self.landings.size and bool(below) and self._counted(horizon) - max(below) >= FEW
+
+    def _counted(self, horizon: float) -> float:
+        """Readings that count when the landings are flown to this horizon."""
+        return sum(float(o.weights(horizon).sum()) for o in self.landings.observations)
 
     # Base
 
-    def base(self) -> Fit:
-        """The nuisances fitted to the base scenario, climbing from the best of many draws of their priors."""
-        climbs = [Climb(self.landings, self.nuisances, z, self.horizons, self.fresh) for z in self._best_draws()]
-        paths = [path for path in self._run("base fit", climbs) if path]
+    def base(self, starts: Sequence[Array] = ()) -> Fit:
+        """The nuisances fitted to the base scenario, climbing from `starts`, or from the best of many draws of their priors."""
+        paths = climbed(self.landings, self.nuisances, self.fresh, self.horizons, starts or self._best_draws(), self.run)
         if not paths:
             raise UnflyableError
-        best = min(paths, key=lambda path: path[-1][1].objective)
-        self.path, self.ends = tuple(point for point, _ in best), tuple(fit for _, fit in best)
-        return self.refine_all([self.ends[-1]], "base fit", everything=True)[0]
+        self.path = paths[0]
+        self.beginnings = tuple(path[0].fit.z for path in distinct([path[:1] for path in paths]))
+        return self.refine_all([self.path[-1].fit], "base fit", everything=True)[0]
 
     def _best_draws(self) -> list[Array]:
         random = np.random.default_rng(self.seed)
@@ -84,7 +84,7 @@ class Search:
         draws = [np.zeros(len(soft)), *(np.where(soft, random.standard_normal(len(soft)), 0.0) for _ in range(DRAWS))]
         first = self.horizons[0]
         tasks = [Predict(self.landings, self.nuisances, tuple(draws[i : i + 10]), first) for i in range(0, len(draws), 10)]
-        rows = [row for some in self._run("draws", tasks) for row in some]
+        rows = [row for some in self.run("draws", tasks) for row in some]
         model = Model(self.landings, self.nuisances, Nobody(), first)
         worth = np.array(
             [
@@ -94,66 +94,40 @@ class Search:
         )
         if not np.isfinite(worth).any():
             raise UnflyableError
-        return [draws[i] for i in np.argsort(worth)[:CLIMBS] if np.isfinite(worth[i])]
+        return [draws[i] for i in np.argsort(worth) if np.isfinite(worth[i])]
 
-    def launch(self) -> int:
-        """Place in the path of the last horizon that the base scenario still explains (chi-square within three standard deviations)."""
-        explained = 0
-        for place, fit in enumerate(self.ends):
-            if not explains(fit.chi2, float(Model(self.landings, self.nuisances, Nobody(), self.path[place].horizon).weights.sum())):
-                break
-            explained = place
-        return explained
+    def explained(self) -> int:
+        """How many horizons, from the first on, the base scenario explains."""
+        for place, (point, fit) in enumerate(self.path):
+            if not explains(fit.chi2, self._counted(point.horizon)):
+                return place
+        return len(self.path)
 
     # Hypotheses
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis' own fit: from where the base scenario stops explaining the data, horizon by horizon, and from the base fit.
+        """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from where it stops explaining them."""
+        here = point_of(base)
+        explained = self.explained()
+        if explained == len(self.path) or explains(base.chi2, self.landings.size):
+            return self._probed(hypotheses, here, "hypotheses")
+        early = self.path[explained].point.z
+        runners = [Runner(h, np.concatenate([early, np.zeros(len(h.coordinates))])) for h in hypotheses]
+        fits: list[tuple[Hypothesis, Fit]] = []
+        for rung in self.path[explained:]:
+            fits = raced(self.landings, self.nuisances, self.fresh, runners, rung.point, self.run)
+            runners = [Runner(h, fit.z) for h, fit in fits]
+        best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
+        again = [(h, fit.z[len(base.z) :]) for h, fit in fits[:FINALISTS]]
+        left = [(h, np.zeros(len(h.coordinates))) for h in hypotheses if h.name not in best]
+        tasks = [self._at(h, here, own) for h, own in (*again, *left)]
+        others = self._best_of([h.name for h, _ in (*again, *left)], self.run("hypotheses", tasks))
+        return best | {n: fit for n, fit in others.items() if n not in best or fit.objective < best[n].objective}
 
-        At each horizon a hypothesis is left behind when its best objective is PRUNE worse than the best one's: φ at the optimum only
-        grows with the horizon, so whoever explains the rest no better than noise can no longer be caught.
-        """
-        here = Point(base.z, base.predicted, base.slopes, np.inf)
-        launch = self.launch()
-        if launch == len(self.path) - 1 or explains(base.chi2, self.landings.size):
-            return self._fit_close(hypotheses, here)
-        early = self.path[launch].z
-        runners = [
-            (h, np.concatenate([early, own]))
-            for h in hypotheses
-            for own in [np.zeros(len(h.coordinates)), *map(np.array, h.scaled_starts())]
-        ]
-        for place in range(launch, len(self.path) - 1):
-            runners = self._ran(runners, self.path[place], steps=8)
-        last = [(h, z) for h, z in runners] + [(h, np.concatenate([base.z, z[len(base.z) :]])) for h, z in runners[:FINALISTS]]
-        tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), here, z, 6, self.fresh) for h, z in last]
-        best = self._best_of([h.name for h, _ in last], self._run("hypotheses", tasks))
-        left = [h for h in hypotheses if h.name not in best]
-        best |= self._best_of(
-            [h.name for h in left], self._run("hypotheses", [self._at(h, here, np.zeros(len(h.coordinates))) for h in left])
-        )
-        return best
-
-    def _ran(self, runners: list[tuple[Hypothesis, Array]], point: Point, steps: int) -> list[tuple[Hypothesis, Array]]:
-        """Who is still in the race after one horizon, best first, one or two starts of each."""
-        tasks = [FitAt(self.landings, (*self.nuisances, *h.coordinates), point, z, steps, self.fresh) for h, z in runners]
-        fits = self._run(f"hypotheses to {point.horizon:g} s", tasks)
-        ended = sorted(((fit.objective, i) for i, fit in enumerate(fits) if fit is not None), key=lambda pair: pair[0])
-        kept: list[tuple[Hypothesis, Array]] = []
-        seen: dict[str, list[float]] = {}
-        for objective, i in ended:
-            others = seen.setdefault(runners[i][0].name, [])
-            behind = objective > ended[0][0] + PRUNE and len(seen) > LEAST
-            if behind or len(others) == 2 or (others and (objective > others[0] + ALIKE or objective < others[0] + 0.05)):
-                continue
-            others.append(objective)
-            kept.append((runners[i][0], fits[i].z))
-        return kept
-
-    def _fit_close(self, hypotheses: Sequence[Hypothesis], here: Point) -> dict[str, Fit]:
-        """From the base fit, which explains the data or nearly so, and from beyond what the nuisances may have absorbed."""
+    def _probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
+        """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""
         tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), here, tuple(h.scaled_starts())) for h in hypotheses]
-        return self._best_of([h.name for h in hypotheses], self._run("hypotheses", tasks))
+        return self._best_of([h.name for h in hypotheses], self.run(stage, tasks))
 
     def _at(self, h: Hypothesis, here: Point, own: Array) -> FitAt:
         return FitAt(self.landings, (*self.nuisances, *h.coordinates), here, np.concatenate([here.z, own]), 5)
@@ -174,18 +148,12 @@ class Search:
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
-        count = len(self.nuisances)
-        z = fits[winner].z[:count]
-        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
-        if predicted is None:
+        point = self._beside(fits[winner])
+        if point is None:
             return fits
-        point = Point(z, predicted, fits[winner].slopes[:, :count], np.inf)
         known = {h.name: h for h in (*hypotheses, NULL)}
-        tasks = [self._at(known[n], point, fits[n].z[count:]) for n in names]
-        better = {}
-        for name, fit in zip(names, self._run("back-substitution", tasks), strict=True):
-            if fit is not None and fit.objective < fits[name].objective - 0.5:
-                better[name] = fit
+        tasks = [self._at(known[n], point, fits[n].z[len(point.z) :]) for n in names]
+        better = _better(dict(zip(names, self.run("back-substitution", tasks), strict=True)), fits)
         return fits | dict(zip(better, self.refine_all(list(better.values()), "back-substitution"), strict=True))
 
     def once_more(self, hypotheses: Sequence[Hypothesis], fits: dict[str, Fit], winner: str) -> dict[str, Fit]:
@@ -193,60 +161,18 @@ class Search:
 
         A wrong effect that fits in part draws the nuisances out of the minimum in which they hid the right one.
         """
-        count = len(self.nuisances)
-        z = fits[winner].z[:count]
-        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
-        if predicted is None:
+        point = self._beside(fits[winner])
+        if point is None:
             return fits
-        point = Point(z, predicted, fits[winner].slopes[:, :count], np.inf)
-        again = [h for h in hypotheses if h.name != winner]
-        tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), point, tuple(h.scaled_starts())) for h in again]
-        found = self._best_of([h.name for h in again], self._run("once more", tasks))
-        better = {n: fit for n, fit in found.items() if n not in fits or fit.objective < fits[n].objective - 0.5}
+        better = _better(self._probed([h for h in hypotheses if h.name != winner], point, "once more"), fits)
         return self.refine_best(fits | better) if better else fits
 
-    def fit_seconds(self, first: Hypothesis, fit: Fit, hypotheses: Sequence[Hypothesis]) -> dict[str, tuple[Hypothesis, Fit]]:
-        """Pairs with a first effect: every second one judged by its slopes at the first one's fit, the best of them fitted."""
-        others = [h for h in hypotheses if h.name != first.name and not slots_of(h) & slots_of(first)]
-        model = [Model(self.landings, (*fit.coordinates, *h.coordinates), Nobody()) for h in others]
-        count = len(fit.z)
-        asks = [
-            Slopes(
-                self.landings,
-                m.coordinates,
-                np.concatenate([fit.z, np.zeros(len(h.coordinates))]),
-                fit.predicted,
-                tuple(range(count, count + len(h.coordinates))),
-            )
-            for m, h in zip(model, others, strict=True)
-        ]
-        linear = {}
-        for h, m, own in zip(others, model, self._run("second effects", asks), strict=True):
-            z = np.concatenate([fit.z, np.zeros(len(h.coordinates))])
-            linear[h.name] = (promised(m, z, fit.predicted, np.column_stack([fit.slopes, own])), h)
-        best = sorted(linear.values(), key=lambda pair: -pair[0])[:SECONDS]
-        best = [pair for pair in best if pair[0] > fit.log_evidence + 1.0]
-        here = Point(fit.z, fit.predicted, fit.slopes, np.inf)
-        tasks = [
-            FitAt(
-                self.landings,
-                (*fit.coordinates, *h.coordinates),
-                here,
-                np.concatenate([fit.z, np.zeros(len(h.coordinates))]),
-                5,
-                self.fresh,
-            )
-            for _, h in best
-        ]
-        found = {}
-        for (_, h), pair in zip(best, self._run("second effects", tasks), strict=True):
-            if pair is not None:
-                both = joined(first, h)
-                found[both.name] = (both, pair)
-        top = sorted(found, key=lambda n: -found[n][1].log_evidence)[:2]
-        for n, again in zip(top, self.refine_all([found[n][1] for n in top], "second effects"), strict=True):
-            found[n] = (found[n][0], again)
-        return found
+    def _beside(self, fit: Fit) -> Point | None:
+        """The fit's nuisances without its effect."""
+        count = len(self.nuisances)
+        z = fit.z[:count]
+        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
+        return None if predicted is None else Point(z, predicted, fit.slopes[:, :count], np.inf)
 
     def refine_all(self, fits: Sequence[Fit], stage: str, everything: bool = False) -> list[Fit]:
         """Fresh slopes of the nuisances and of the hypothesis' own; of the tolerances too with `everything`."""
@@ -254,15 +180,21 @@ class Search:
         for fit in fits:
             own = range(len(self.nuisances), len(fit.z))
             tasks.append(Refine(self.landings, fit, tuple(range(len(fit.z))) if everything else (*self.fresh, *own)))
-        return list(self._run(stage, tasks))
+        return list(self.run(stage, tasks))
 
-    def renoised(self, fit: Fit) -> Fit:
-        """The fit as the landings' present noise sees it."""
-        return seen_from(Model(self.landings, fit.coordinates, Nobody()), fit.z, fit.predicted, fit.slopes)
-
-    def _run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
+    def run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
         self.told(stage, self.leader, 0.0)
         return self.crew.run(tasks, lambda done, of: self.told(stage, self.leader, done / of))
+
+
+def renoised(landings: Landings, fit: Fit) -> Fit:
+    """The fit as the landings' present noise sees it."""
+    return seen_from(Model(landings, fit.coordinates, Nobody()), fit.z, fit.predicted, fit.slopes)
+
+
+def point_of(fit: Fit) -> Point:
+    """Where a fit to whole landings ended, for others to start from."""
+    return Point(fit.z, fit.predicted, fit.slopes, np.inf)
 
 
 def explains(chi2: float, count: float) -> bool:
@@ -270,28 +202,9 @@ def explains(chi2: float, count: float) -> bool:
     return chi2 <= count + 3.0 * float(np.sqrt(2.0 * count))
 
 
-def promised(model: Model, z: Array, predicted: Array, slopes: Array) -> float:
-    """ln evidence at the optimum that the slopes promise."""
-    residual, jacobian = model.residual(predicted), model.whitened(slopes, predicted)
-    hessian = jacobian.T @ jacobian + np.eye(len(z))
-    slope = jacobian.T @ residual - z
-    step = np.linalg.solve(hessian, slope)
-    return float(-0.5 * (residual @ residual + z @ z) + 0.5 * slope @ step - 0.5 * np.linalg.slogdet(hessian)[1])
-
-
-def slots_of(h: Hypothesis) -> set[str]:
-    """What a hypothesis moves."""
-    return {name for c in h.coordinates for name, _ in c.slots}
-
-
-class Nobody:
-    """A lander for arithmetic that flies nothing."""
-
-    def land(self, *_: object) -> None:
-        return None
-
-    def close(self) -> None:
-        return None
+def _better(found: dict[str, Fit | None] | dict[str, Fit], fits: dict[str, Fit]) -> dict[str, Fit]:
+    """Those that are better by more than what the integrator leaves to chance."""
+    return {n: f for n, f in found.items() if f is not None and (n not in fits or f.objective < fits[n].objective - 0.5)}
 
 
 __all__ = ["Search", "UnflyableError"]

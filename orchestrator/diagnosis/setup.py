@@ -22,6 +22,7 @@ from orchestrator.diagnosis.observation import ORIGIN, Observation, Reading, Tra
 from orchestrator.diagnosis.places import CLOCK, TWIN
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.recorded import twin_column
+from orchestrator.diagnosis.starts import number_of
 from orchestrator.diagnosis.twin_parameters import twin_parameters
 from orchestrator.errors import MeasuredError, ScenarioError, UserError
 from orchestrator.master.slave import Interface, Kind
@@ -135,7 +136,7 @@ class DifferingLander:
 def _starts(interface: Interface, prefix: str) -> dict[str, float]:
     """What the unit starts from by itself: effects add to it."""
     parameters = (v for v in interface.of("parameter") if v.kind is not Kind.STRING)
-    return {prefix + v.name: float(v.start == "true") if v.kind is Kind.BOOLEAN else float(v.start or 0.0) for v in parameters}
+    return {prefix + v.name: number_of(v.start) for v in parameters}
 
 
 def maker(addresses: Addresses, base: Mapping[str, float]) -> TwinMaker:

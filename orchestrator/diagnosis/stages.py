@@ -17,7 +17,8 @@ from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import Noise, Stretch, noise_of
 from orchestrator.diagnosis.observation import Observation
-from orchestrator.diagnosis.search import Search, Told
+from orchestrator.diagnosis.pairs import fit_seconds
+from orchestrator.diagnosis.search import Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks import Land
 from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, judge
@@ -101,7 +102,7 @@ def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypothese
     search = Search(setup.landings, setup.nuisances, setup.tolerances, crew, seed, told)
     base = search.base()
     courses = hear_noise(setup, crew, base)
-    base = search.refine_all([search.renoised(base)], "base fit", everything=True)[0]
+    base = search.refine_all([renoised(setup.landings, base)], "base fit", everything=True)[0]
     state = State(setup, search, base, hypotheses=list(hypotheses), courses=courses)
     state.fits = search.fit_all(hypotheses, base) | {NULL.name: base}
     state.fits = search.refine_best(state.fits)
@@ -131,7 +132,7 @@ def _rehear(state: State, crew: Crew) -> None:
     after = [n for o in state.setup.landings.observations for n in o.noises]
     if all(abs(np.log(a.sigma / b.sigma)) < 0.05 and abs(a.rho - b.rho) < 0.05 for a, b in zip(after, before, strict=True)):
         return
-    state.fits = {name: state.search.renoised(fit) for name, fit in state.fits.items()}
+    state.fits = {name: renoised(state.setup.landings, fit) for name, fit in state.fits.items()}
     top = _ranked(state)[:4]
     top = top if NULL.name in top else [*top, NULL.name]
     state.fits |= dict(zip(top, state.search.refine_all([state.fits[n] for n in top], "finalists"), strict=True))
@@ -146,7 +147,7 @@ def try_pairs(state: State) -> None:
         return
     seconds = list(state.hypotheses)
     for name in singles:
-        for pair, (hypothesis, fit) in state.search.fit_seconds(known[name], state.fits[name], seconds).items():
+        for pair, (hypothesis, fit) in fit_seconds(state.search, known[name], state.fits[name], seconds).items():
             swapped_name = " + ".join(reversed(pair.split(" + ")))
             if swapped_name not in state.fits:
                 state.fits[pair] = fit
@@ -179,19 +180,19 @@ def ask_holdouts(
     state: State, held: Setup, crew: Crew, seed: int, names: Sequence[str], told: Told | None = None
 ) -> tuple[dict[str, Fit], dict[str, tuple[float, float]]]:
     """Fits of nothing missing and of `names` to the held-out landings, each effect known only as the fitted landings left it."""
-    count = len(state.search.nuisances)
     fits: dict[str, Fit] = {}
+    starts: list[Array] = []
     for name in (NULL.name, *names):
-        own = posterior_of(state.fits[name], count) if name != NULL.name else []
+        own = posterior_of(state.fits[name], len(state.search.nuisances)) if name != NULL.name else []
         search = Search(held.landings, [*held.nuisances, *own], held.tolerances, crew, seed, told)
-        fit = search.base()
+        place = len(held.nuisances)
+        fits[name] = search.base([np.concatenate([z[:place], np.zeros(len(own)), z[place:]]) for z in starts])
         if name == NULL.name:
-            hear_noise(held, crew, fit)
-        fits[name] = search.renoised(fit)
+            starts = list(search.beginnings)
+            hear_noise(held, crew, fits[name])
     if names:
         hear_noise(held, crew, fits[names[0]])
-        blank = {n: Search(held.landings, fits[n].coordinates, (), crew, seed) for n in fits}
-        fits = {n: blank[n].renoised(fit) for n, fit in fits.items()}
+    fits = {n: renoised(held.landings, fit) for n, fit in fits.items()}
     null = fits[NULL.name].log_evidence
     return fits, {n: (fits[n].log_evidence - null, adequacy(fits[n], held.landings).p) for n in names}
 

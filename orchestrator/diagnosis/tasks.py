@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.fit import Fit, fitted, refined
 from orchestrator.diagnosis.landing import Course, Lander
+from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.problem import Landings, Model
 
 Array = NDArray[np.float64]
@@ -61,42 +62,33 @@ class Slopes:
 
 @dataclass(frozen=True)
 class Climb:
-    """The nuisances alone, fitted to longer and longer stretches of the landing, slopes made anew at each.
-
-    What happens in the first tenths of a second depends almost linearly on the nuisances; once they are known to that, the next contact
-    comes in the right order. A fit to the whole landing at once ends in a false minimum more often than not (docs/diagnosis.md).
-    """
+    """The nuisances alone fitted to one horizon, slopes made anew at its beginning and where they prove poor."""
 
     landings: Landings
     nuisances: tuple[Coordinate, ...]
     z: Array
-    horizons: tuple[float, ...]
+    horizon: float
     fresh: tuple[int, ...]
     """Columns worth making anew at every horizon; the others (tolerances) stay put until the last."""
+    gently: bool = False
+    """With threefold noise first: from a draw of the prior, not from where a shorter horizon ended."""
 
-    def __call__(self, lander: Lander) -> list[tuple[Point, Fit]] | None:
-        """At each horizon where the fit began (with the slopes there) and how it ended."""
-        z, path = self.z, []
-        for horizon in self.horizons:
-            model = Model(self.landings, self.nuisances, lander, horizon)
-            predicted = model.predict(z)
-            if predicted is None:
-                return None
-            slopes = np.zeros((len(predicted), len(z)))
-            which = self.fresh if horizon < np.inf else tuple(range(len(z)))
-            slopes[:, list(which)] = model.slopes(z, predicted, which)
-            first = horizon == self.horizons[0]
-            fit = fitted(model, z, slopes, predicted, temper=3.0, steps=4, renew=self.fresh) if first else None
-            fit = (
-                fitted(model, fit.z, fit.slopes, fit.predicted, renew=self.fresh)
-                if fit
-                else fitted(model, z, slopes, predicted, renew=self.fresh)
-            )
-            if fit is None:
-                return None
-            path.append((Point(z, predicted, slopes, horizon), fit))
-            z = fit.z
-        return path
+    def __call__(self, lander: Lander) -> tuple[Point, Fit] | None:
+        """Where the fit began, with the slopes there, and how it ended."""
+        model = Model(self.landings, self.nuisances, lander, self.horizon)
+        predicted = model.predict(self.z)
+        if predicted is None:
+            return None
+        which = self.fresh if self.horizon < np.inf else tuple(range(len(self.z)))
+        slopes = np.zeros((len(predicted), len(self.z)))
+        slopes[:, list(which)] = model.slopes(self.z, predicted, which)
+        began = Point(self.z, predicted, slopes, self.horizon)
+        fit: Fit | None = None
+        if self.gently:
+            fit = fitted(model, self.z, slopes, predicted, temper=3.0, steps=4, renew=self.fresh)
+        z, slopes, predicted = (fit.z, fit.slopes, fit.predicted) if fit else (self.z, slopes, predicted)
+        fit = fitted(model, z, slopes, predicted, steps=8, renew=self.fresh, renewals=2)
+        return None if fit is None else (began, fit)
 
 
 @dataclass(frozen=True)
@@ -123,6 +115,23 @@ class FitAt:
             return None
         slopes = np.column_stack([self.point.slopes, model.slopes(self.z, predicted, mine)])
         return fitted(model, self.z, slopes, predicted, steps=self.steps, renew=(*self.fresh, *mine))
+
+
+@dataclass(frozen=True)
+class GoOn:
+    """A fit taken on at its horizon; its nuisances' columns `fresh` and its own are made anew, once, where a step gains too little."""
+
+    landings: Landings
+    fit: Fit
+    horizon: float
+    fresh: tuple[int, ...]
+    nuisances: int
+    steps: int = 8
+
+    def __call__(self, lander: Lander) -> Fit | None:
+        model = Model(self.landings, self.fit.coordinates, lander, self.horizon)
+        renew = (*self.fresh, *range(self.nuisances, len(self.fit.z)))
+        return fitted(model, self.fit.z, self.fit.slopes, self.fit.predicted, steps=self.steps, renew=renew)
 
 
 @dataclass(frozen=True)
@@ -214,5 +223,4 @@ class Land:
 
     def __call__(self, lander: Lander) -> Course | None:
         values = Model(self.landings, self.coordinates, lander).values(self.z, self.landing)
-        own = {name: v for name, v in values.items() if not name.startswith(("clock.", "time."))}
-        return lander.land({**self.landings.bases[self.landing], **own}, self.grid, self.columns, self.final)
+        return lander.land({**self.landings.bases[self.landing], **of_units(values)}, self.grid, self.columns, self.final)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from orchestrator.diagnosis.starts import number_of
 from orchestrator.errors import UnitError
 from orchestrator.fmi.description import read_interface
 from orchestrator.master.slave import Interface, Kind, Value, stem
@@ -83,12 +84,7 @@ def _rescript(entries: dict[str, bytes], interface: Interface, values: Mapping[s
 def _starts(interface: Interface, values: Mapping[str, Value]) -> dict[str, tuple[float, ...]]:
     """Vector -> all its elements, the found ones among them."""
     vectors = dict.fromkeys(stem(variable) for variable in values)
-    return {vector: tuple(_number(values.get(it.name, it.start)) for it in interface.vectors[vector]) for vector in vectors}
-
-
-def _number(value: object) -> float:
-    text = str(value).lower()
-    return float({"true": "1", "false": "0"}.get(text, text))
+    return {vector: tuple(number_of(values.get(it.name, it.start)) for it in interface.vectors[vector]) for vector in vectors}
 
 
 def _describe(root: ElementTree.Element, values: Mapping[str, Value], name: str, description: str) -> None:

@@ -11,6 +11,7 @@ from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew, content
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.problem import Model
 from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.tasks import FitAt, Point, Probe
@@ -55,7 +56,7 @@ def test_two_hidden_effects_are_found_as_a_pair() -> None:
     fits, judged, search = searched({"drag": 0.4, "bias": 0.5})
     assert judge(judged, len(EFFECTS)).verdict == "none_of_my_effects"
     best = max((n for n in fits if n != NULL.name), key=lambda n: fits[n].log_evidence)
-    pairs = search.fit_seconds(next(h for h in EFFECTS if h.name == best), fits[best], EFFECTS)
+    pairs = fit_seconds(search, next(h for h in EFFECTS if h.name == best), fits[best], EFFECTS)
     null = fits[NULL.name].log_evidence
     judged += [Judged(n, f.log_evidence - null, adequacy(f, search.landings).p) for n, (_, f) in pairs.items()]
     found = judge(judged, len(EFFECTS))
@@ -79,7 +80,7 @@ class Trap(Formula):
         n, e = values["n"], values["e"]
         if name == "x":
             return np.full(len(t), n + e)
-        return np.asarray(0.1 * (1.0 - np.cos(15.7 * n)) + 0.3 * n + (0.25 + 0.28 * t) * e)
+        return np.asarray(0.143 * (1.0 - np.cos(11.0 * n)) + 0.3 * n + (0.25 + 0.28 * t) * e)
 
 
 def test_a_probe_escapes_the_minimum_in_which_nuisances_hold_the_effect() -> None:

@@ -9,6 +9,7 @@ from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.outcome import Estimate
+from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import Told
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import State
@@ -81,7 +82,7 @@ def with_second(regression: Regression, found: Found, offered: list[str], null: 
     if found.adequate:
         return found
     others = [regression.hypotheses[n] for n in regression.ranked(offered) if n != found.name][:SECONDS]
-    pairs = regression.search.fit_seconds(found.hypothesis, found.fit, others)
+    pairs = fit_seconds(regression.search, found.hypothesis, found.fit, others)
     name = max(pairs, key=lambda n: pairs[n][1].log_evidence, default=None)
     if name is None or pairs[name][1].log_evidence < found.fit.log_evidence + BEATS:
         return found

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import Coordinate
-from orchestrator.diagnosis.problem import Landings, Model
-from orchestrator.diagnosis.search import Nobody
+from orchestrator.diagnosis.problem import Landings, Model, Nobody
 
 Array = NDArray[np.float64]
 

@@ -67,7 +67,7 @@ class Regression:
         search = self.search
         z, own = np.concatenate([view.z, [0.0]]), (len(view.z),)
         asks = [Slopes(search.landings, (*search.nuisances, *self.hypotheses[n].coordinates), z, view.predicted, own) for n in names]
-        columns = search._run("terms", asks)
+        columns = search.run("terms", asks)
         view.columns = {n: column[:, 0] for n, column in zip(names, columns, strict=True)}
         self.views.append(view)
         found = linear(whitened(search.landings, search.nuisances, view))
@@ -87,7 +87,7 @@ class Regression:
             start = np.concatenate([view.z, [float(np.clip(estimate, low, high))]])
             point = Point(view.z, view.predicted, view.slopes, np.inf)
             tasks.append(FitAt(search.landings, (*search.nuisances, *coordinates), point, start, STEPS))
-        self.keep(dict(zip(names, search._run("terms", tasks), strict=True)))
+        self.keep(dict(zip(names, search.run("terms", tasks), strict=True)))
 
     def keep(self, fits: Mapping[str, Fit | None]) -> None:
         """Those that are better than what there was."""
