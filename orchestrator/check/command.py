@@ -20,6 +20,7 @@ def check(
         typer.Option("--as", help="Kind of unit it is to stand in for, as GearLeg or GuidanceControl; without it, guessed from its ports."),
     ] = None,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="parameter=value to try it with; may be repeated.")] = None,
+    only: Annotated[list[str] | None, typer.Option(help="Try this alone, as rollback or \"bad input\"; may be repeated.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", help="File to write the findings to as well.")] = None,
     timeout: Annotated[float, typer.Option(help="s without a sign of life after which it is taken to hang.")] = 120.0,
     quiet: Annotated[bool, typer.Option("--quiet", help="Only what failed, in one line.")] = False,
@@ -41,7 +42,7 @@ def check(
     values = given_values(read_interface(fmu), fmu.stem, overrides or ())
     terminal = Console(stderr=True)
     with terminal.status("reading", spinner="dots") if terminal.is_terminal and not quiet else _Silence() as status:
-        result = checked(fmu, kind, values, timeout, lambda what: status.update(f"{fmu.name}: {what}"))
+        result = checked(fmu, kind, values, timeout, lambda what: status.update(f"{fmu.name}: {what}"), only or ())
     if json_file is not None:
         json_file.write_text(json.dumps(as_json(result), indent=1, ensure_ascii=False) + "\n", "utf-8")
     if not quiet:

@@ -1,5 +1,6 @@
 """A rate sensor in C, written against the port contract, and the same with one fault each: what `orchestrator check` is to find."""
 
+import re
 import subprocess
 import tempfile
 import zipfile
@@ -44,10 +45,11 @@ _FROM = "fmi2Status fmi2DoStep"
 
 def source(fault: str) -> str:
     """The sample's C with another step: the life cycle is the same."""
-    shared = SOURCE[: SOURCE.index(_FROM)].replace("for (int i = 2; i < 7; i++) m->v[i] = 1e9;", "m->v[6] = 0.05;")
-    shared = shared.replace("for (int i = 2; i < 7; i++) ((Unit*)c)->v[i] = 1e9;", "((Unit*)c)->v[6] = 0.05;")
+    shared, changed = re.subn(r"for \(int i = 2; i < \d; i\+\+\) (.*)->v\[i\] = 1e9;", r"\1->v[6] = 0.05;", SOURCE[: SOURCE.index(_FROM)])
+    assert changed == 2      # where an instance is made and where it is reset
     if fault == "feedthrough":
         get = "for (size_t i = 0; i < n; i++) x[i] = ((Unit*)c)->v[r[i]];"
+        assert get in shared
         shared = shared.replace(get, get.replace("->v[r[i]]", "->v[r[i]] + (r[i] == 3 ? ((Unit*)c)->v[0] : 0.0)"))
     refuse = "" if fault in ("nan passes", "crash on nan") else _REFUSE
     step = _STEP.replace("REFUSE", refuse).replace("BEFORE", BEFORE.get(fault, ""))
