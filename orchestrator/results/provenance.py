@@ -15,6 +15,7 @@ import numpy as np
 import tomli_w
 
 from orchestrator.master.result import RunResult, UnitRecord
+from orchestrator.terrain.ground import repeatable
 
 DISTRIBUTION = "lander-touchdown"
 
@@ -24,7 +25,8 @@ def write_scenario(result: RunResult, path: Path) -> Path:
     lines = [f"# {result.title}", "# As run: overlays merged, settings of the command line applied."]
     if result.scenario_path is not None:
         lines.append(f"# From {result.scenario_path.name}")
-    path.write_text("\n".join(lines) + "\n\n" + scenario_text(result.scenario), encoding="utf-8")
+    scenario = repeatable(result.scenario, result.unit_records, path.parent)
+    path.write_text("\n".join(lines) + "\n\n" + scenario_text(scenario), encoding="utf-8")
     return path
 
 

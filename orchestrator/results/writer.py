@@ -10,13 +10,14 @@ from matplotlib.figure import Figure
 
 from orchestrator.errors import ScenarioError
 from orchestrator.master.result import RunResult
-from orchestrator.results import comparison, cost, history, plot_landing, plot_run, plot_style, provenance, references
+from orchestrator.results import comparison, cost, history, plot_landing, plot_run, plot_style, plot_terrain, provenance, references
 from orchestrator.results.channels import Array, Channels
 from orchestrator.results.energy import EnergyAccount, account_of
 from orchestrator.results.failure import failure
 from orchestrator.results.generic import generic, report
 from orchestrator.results.schema import ResultsTable, read
 from orchestrator.results.touchdown import touchdown
+from orchestrator.terrain.ground import ground_of
 
 
 def write(result: RunResult, out: Path) -> dict[str, Any]:
@@ -116,6 +117,8 @@ def _draw(
         if table.resolved_kind == "touchdown":
             figures["motion"] = plot_landing.motion(title, channels, table, contacts)
             figures["pads"] = plot_landing.pads(title, channels, table, contacts)
+            ground = ground_of(result.unit_records)
+            figures["terrain"] = None if ground is None else plot_terrain.terrain(title, channels, table, contacts, ground)
             figures["struts"] = plot_landing.struts(title, channels, table, contacts)
         figures["report"] = plot_run.reported(title, channels, table)
         figures["energy"] = plot_run.energy(title, result.times, account, contacts) if account else None

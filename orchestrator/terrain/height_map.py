@@ -61,7 +61,8 @@ def read_npy(path: Path, table: TerrainTable, place: str) -> Raster:
     try:
         given = np.load(path, allow_pickle=False)
     except (OSError, ValueError, EOFError) as error:
-        raise ScenarioError(f"{place}: cannot be read ({error}); write it with numpy.save") from None
+        said = "" if "pickle" in str(error) else f" ({error})"
+        raise ScenarioError(f"{place}: is no .npy file of numbers{said}; write it with numpy.save") from None
     if not isinstance(given, np.ndarray) or given.ndim != 2 or given.dtype.kind not in "fiu":
         shape = f"{given.dtype} of shape {given.shape}" if isinstance(given, np.ndarray) else "several arrays"
         raise ScenarioError(f"{place}: holds {shape}, expects numbers in rows and columns; save one array of heights")
@@ -148,6 +149,6 @@ def _tile(raster: Raster, table: TerrainTable, place: str) -> HeightMap:
         raise ScenarioError(f"{place}: has {heights.shape} nodes within terrain.extent = {table.extent:g} m; give a finer map")
     if np.isnan(heights).all():
         raise ScenarioError(f"{place}: has no value within {table.extent:g} m of the origin; choose another origin")
-    away = np.where(np.isnan(heights), np.inf, np.hypot(norths[i][:, None], easts[j]))
+    away = np.where(np.isnan(heights), np.inf, np.hypot(norths[i][:, None], easts[j]).round(9))  # so that a tie is one
     datum = heights.flat[int(np.argmin(away))]
     return HeightMap(heights - datum, float(norths[i[0]]), float(easts[j[0]]), raster.pixel_north, raster.pixel_east)

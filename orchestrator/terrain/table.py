@@ -27,6 +27,13 @@ class CraterTable(Part):
     rim: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None
     """Crest above the ground around, m; default: that of a fresh crater."""
 
+    @model_validator(mode="after")
+    def _shape(self) -> CraterTable:
+        _, _, diameter, depth, rim = self.numbers()
+        if not (depth <= diameter and rim <= depth):
+            raise ValueError(f"diameter {diameter:g} m, depth {depth:g} m, rim {rim:g} m; expects depth <= diameter and rim <= depth")
+        return self
+
     def numbers(self) -> list[float]:
         depth = FRESH_DEPTH * self.diameter if self.depth is None else self.depth
         rim = FRESH_RIM * self.diameter if self.rim is None else self.rim
@@ -40,6 +47,12 @@ class BoulderTable(Part):
     """Of the ball, m."""
     height: Length | None = None
     """Of its top above the ground, m; default: half buried."""
+
+    @model_validator(mode="after")
+    def _shape(self) -> BoulderTable:
+        if (self.height or 0.0) > 2.0 * self.radius:
+            raise ValueError(f"height {self.height:g} m of a ball of radius {self.radius:g} m; expects at most {2.0 * self.radius:g} m")
+        return self
 
     def numbers(self) -> list[float]:
         return [*self.center, self.radius, self.radius if self.height is None else self.height]

@@ -117,7 +117,7 @@ def refuse_gaps(surface: Surface, y: float, z: float, reach: float, which: str) 
     )
     if min(ends) < reach:
         where = f"{min(ends):.3g} m inside the edge" if min(ends) >= 0.0 else f"{-min(ends):.3g} m beyond the edge"
-        raise UnitError(f"{at} is {where} of the height map's use, expects at least {reach:g} m; give a larger map or another origin")
+        raise UnitError(f"{at} is {where} of what the height map covers, expects at least {reach:g} m; give a larger map or another origin")
     i, j = np.nonzero(~np.isfinite(m.heights))
     if not i.size:
         return
@@ -126,8 +126,9 @@ def refuse_gaps(surface: Surface, y: float, z: float, reach: float, which: str) 
     away = np.hypot(aside, along)
     k = int(np.argmin(away))
     if away[k] < max(reach, 1e-9):
-        far = hypot(m.north + i[k] * m.step_north - north, m.east + j[k] * m.step_east - east)
+        hole_north, hole_east = m.north + i[k] * m.step_north, m.east + j[k] * m.step_east
+        far = hypot(hole_north - north, hole_east - east)
         raise UnitError(
-            f"{at}: the height map has no value {far:.3g} m away, at its row {i[k] + 1} and column {j[k] + 1} from the south-west,"
-            f" expects to be whole within {reach:g} m; fill the hole or choose another origin"
+            f"{at}: the height map has no value {far:.3g} m away, {hole_north:.3f} m north and {hole_east:.3f} m east of the origin;"
+            f" expects to be whole within {reach:g} m and two nodes more; fill the hole or choose another origin"
         )
