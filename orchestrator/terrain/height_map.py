@@ -97,8 +97,7 @@ def _geotiff(source: Any, table: TerrainTable, place: str) -> Raster:
         raise ScenarioError(f"{place}: its rows do not run from north to south and its columns from west to east; rewrite it so (gdalwarp)")
     _require_metres(_height_unit(source, table), f"{place}: the heights", "the file does not say")
     values = source.read(1, masked=True).astype(np.float64) * source.scales[0] + source.offsets[0]
-    west, north = t * (0.5, 0.5)
-    return Raster(np.ma.filled(values, np.nan), west, north, -t.e, t.a)
+    return Raster(np.ma.filled(values, np.nan), t.c + 0.5 * t.a, t.f + 0.5 * t.e, -t.e, t.a)
 
 
 def _check_coordinates(crs: Any, table: TerrainTable, place: str) -> None:

@@ -1,8 +1,7 @@
 """Makes site.npy, the small synthetic height map of apollo11_dem.toml: python scenarios/terrain/make_tile.py
 
-Not a survey of Tranquility Base. Fractal roughness by its power spectrum: amplitudes fall with the wavelength so that heights of 0.25 m
-pixels scatter as on smooth mare, about 3 degrees of rms slope between neighbours (M. A. Kreslavsky et al., Icarus 226 (2013), give such
-slopes at metre scale; the Hurst exponent of 0.8 is near theirs). Rows north to south, heights in m, single precision, fixed seed.
+Not a survey of Tranquility Base. Fractal roughness: amplitudes fall with the wavelength by a power law of Hurst exponent 0.8, scaled to an
+rms slope of 5 % (3 degrees) from pixel to pixel. Both are assumed. Rows north to south, heights in m, single precision, fixed seed.
 """
 
 from pathlib import Path

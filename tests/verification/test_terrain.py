@@ -172,7 +172,7 @@ def test_a_frictionless_point_in_a_bowl_slides_as_an_independent_integrator_says
 
     Setup: 100 kg on hard, frictionless soil (law 2) in a bowl h = a (y² + z²), pushed sideways; reference: Lagrange's equations of a
     bead on that surface, scipy's DOP853 at 1e-12. Tolerance: 1 um of 2.7 m of way after 4 s, and 2e-5 of the energy exchanged. Both grow
-    with the depth, here 16 um, as decision 11 says (measured: 0.07 um and 6.5e-6; at 1.6 mm of depth a hundred times that).
+    with the depth, here 16 um, as decision 12 says (measured: 0.07 um and 6.5e-6; at 1.6 mm of depth a hundred times that).
     """
     a, gravity = 0.125 / 2.0, 1.63
     bowl = LEVEL._replace(relief=relief(craters=[Crater(0.0, 0.0, 8.0, 1.0, 0.0)]))

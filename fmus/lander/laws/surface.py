@@ -1,6 +1,6 @@
 """The surface as a thing of its own: how far a point is below it, and its normal there.
 
-A plane, and on it a relief where there is one. Over the relief a point meets the tangent plane under it (decision 11): N is the normal at
+A plane, and on it a relief where there is one. Over the relief a point meets the tangent plane under it (decision 12): N is the normal at
 the point's own (Y, Z), its depth is δ = (h - X) N_X, which for a plane is the distance.
 """
 

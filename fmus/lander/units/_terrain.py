@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 ROOM = 8  # craters, and boulders
 NO_MAP, NOT_YET = 0.0, -1.0
 
-TERRAIN = (  # decision 11; null unless set
+TERRAIN = (  # decision 12; null unless set
     text("terrain.map", "path of a .npy file: heights in m over the plane, rows to the north, columns to the east; empty: no map"),
     parameter("terrain.map_corner", (0.0, 0.0), "m", "of the map's first node from L's origin: to the north, to the east"),
     parameter("terrain.map_step", (1.0, 1.0), "m", "between the map's rows, between its columns", minimum=1e-4),

@@ -144,16 +144,16 @@ class RegolithContact(Unit):
             self.soil, self.surface, self.pad, self.value("longest_substep"), step, self.port, self.model, self.shift, *self.outputs
         )
         if not done:
-            self.refuse_gaps(self.pad.radius)
+            self.refuse_gaps(self.pad.radius, step)
             raise UnitError(
                 f"the contact's equations did not converge over {step:g} s at a sink depth of {-self.value('gap'):.4g} m; "
                 "a shorter interval may do"
             )
         self.feel(time + max(touch, 0.0))
 
-    def refuse_gaps(self, reach: float) -> None:
-        """UnitError where the height map is not whole within `reach` (m) of the pad."""
-        _, y, z = self["pad.position"].tolist()
+    def refuse_gaps(self, reach: float, ahead: float = 0.0) -> None:
+        """UnitError where the height map is not whole within `reach` (m) of the pad, as it will be `ahead` (s) from now."""
+        _, y, z = (self["pad.position"] + ahead * self["pad.velocity"]).tolist()
         refuse_gaps(self.surface, y, z, reach, "the pad")
 
     def feel(self, time: float) -> None:
