@@ -15,9 +15,10 @@ from orchestrator.simulation import draw_up, read_scenario, run_scenario
 
 SCENARIOS = {"Adams-like": full.SCENARIO, "Zupp-like": full.SCENARIO.with_name("apollo11_zupp.toml")}
 STEPS = (1e-3, 5e-4, 2e-4, 1e-4)  # s
-CASES = [("Adams-like", peer, step) for peer in ("libcosim", "ecos", "fmpy") for step in STEPS]
-CASES[len(STEPS):len(STEPS)] = [("Adams-like", "libcosim", step) for step in (5e-5, 2e-5)]      # which step it would need
-CASES += [("Zupp-like", peer, 1e-4) for peer in ("libcosim", "ecos")]
+FINER = (5e-5, 2e-5)  # s: libcosim alone, for which step it would need
+CASES = [("Adams-like", "libcosim", step) for step in (*STEPS, *FINER)]
+CASES += [("Adams-like", peer, step) for peer in ("ecos", "fmpy") for step in STEPS]
+CASES += [("Zupp-like", "libcosim", step) for step in (1e-4, *FINER)] + [("Zupp-like", "ecos", 1e-4)]
 WATCH = [*full.BODY, *full.STROKES]
 STOP = full.STOP
 TIMEOUT = 900.0  # s

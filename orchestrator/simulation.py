@@ -214,6 +214,7 @@ class Simulation:
             paper=table.paper,
             results=table.results,
             parameters=self._parameters(),
+            variant=scenario.where.partition("#")[2],
         )
 
     def _parameters(self) -> dict[str, float]:

@@ -165,3 +165,5 @@ class RunResult:
     """The scenario's [results] table, unchanged."""
     parameters: dict[str, float] = field(default_factory=dict)
     """"unit.parameter" -> number it ran with, those left at the unit's own start value among them; of a text, 1 where there is any."""
+    variant: str = ""
+    """Which system of an .ssp, where it was not the default one."""

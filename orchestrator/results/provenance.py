@@ -40,6 +40,7 @@ def write_inputs(result: RunResult, path: Path) -> Path:
     inputs = {
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "scenario": result.scenario_path.name if result.scenario_path else None,
+        "variant": result.variant or None,
         "scenario_sha256": sha256(result.scenario_path.read_bytes()).hexdigest() if result.scenario_path else None,
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",

@@ -23,7 +23,7 @@ def export(
         typer.Option("--output", help='Outputs that other tools shall see though nothing takes them, "leg*.*.stroke"; may be repeated.'),
     ] = None,
     step: Annotated[
-        float | None, typer.Option(help="s; what hosts with a fixed step are told to take [default: the scenario's smallest interval].")
+        float | None, typer.Option(help="s; fixed step that hosts are told to take; by itself the smallest interval.")
     ] = None,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing.")] = False,

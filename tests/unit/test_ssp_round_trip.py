@@ -145,7 +145,7 @@ def test_a_run_says_which_file_it_was_of(tmp_path: Path) -> None:
     ssp = exported(oscillator(tmp_path), tmp_path / "system.ssp", "--output", "spring.stretch")
     assert "stretch" in {c.get("name") for c in description(ssp).iter("{*}Connector")}
     run(ssp, tmp_path / "out")
-    inputs = json.loads((tmp_path / "out" / "inputs.json").read_text())
+    inputs = json.loads((tmp_path / "out" / "inputs.json").read_text("utf-8"))
     assert inputs["scenario"] == "system.ssp"
     assert len(inputs["scenario_sha256"]) == 64
 
