@@ -41,6 +41,7 @@ class Outcome:
             "inside_certified": [point for name in BOUNDARIES for point in points[name] if not point["outside_certified"]],
             "not_reached": [self._not_reached(ray, name) for ray in self.rays for name in BOUNDARIES if name not in ray.brackets],
             "differ": [point for name in BOUNDARIES for point in points[name] if point["check"] and not point["check"]["agrees"]],
+            "rungs": [self._rung(ray, speed) for ray in self.rays for speed in ray.rungs],
             "audit": self._audit(),
             "not_flown": [{"inputs": one.as_dict(), "error": margins.error} for one, margins in failures(self.rays)],
             "varied": self.doghouse.varies.model_dump(),
@@ -104,6 +105,19 @@ class Outcome:
             "beyond_margin": beyond.left[name],
             "errors": [margins.error for margins in pair if margins.error],
             "commands": [command(self.check, one) for one in (bracket.inside, bracket.beyond)],
+        }
+
+    def _rung(self, ray: Ray, speed: float) -> dict[str, Any]:
+        """How many of all landings at one speed on a ray failed."""
+        flown = ray.rungs[speed]
+        fastest = ray.combinations[0].at(ray.angle, speed)
+        return {
+            "horizontal_m_s": fastest.horizontal_m_s,
+            "vertical_m_s": fastest.vertical_m_s,
+            "times_certified": speed / ray.certified,
+            "landings": len(flown),
+            "at_rest": sum(margins.stands for margins in flown),
+            "failed": {name: sum(margins.fails(name) for margins in flown) for name in BOUNDARIES},
         }
 
     def _not_reached(self, ray: Ray, name: str) -> dict[str, Any]:

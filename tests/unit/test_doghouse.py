@@ -94,6 +94,8 @@ def test_a_boundary_no_rung_reaches_is_told_and_not_invented():
     assert all(not points for points in summary["boundaries"].values())
     assert len(summary["not_reached"]) == 4 * len(read(PLAN).search.rays_deg)
     assert summary["all_outside"] is True
+    assert {row["times_certified"] for row in summary["rungs"]} == {1.3, 2.0}
+    assert all(sum(row["failed"].values()) == 0 for row in summary["rungs"])
 
 
 def test_a_boundary_inside_the_envelope_is_named_with_its_landing_and_reason(tmp_path):
