@@ -92,7 +92,8 @@ class DataSet:
 
     def _write(self, table: pa.Table, path: Path) -> None:
         unfinished = path.with_suffix(".unfinished")
-        pq.write_table(table, unfinished, compression="zstd")
+        one = table.num_rows == 1                          # a dictionary of one value is not worth its making
+        pq.write_table(table, unfinished, compression="zstd", use_dictionary=not one, write_statistics=not one)
         unfinished.replace(path)
 
 

@@ -52,6 +52,19 @@ def test_a_worker_killed_in_mid_campaign_costs_no_landing_and_doubles_none(tmp_p
     assert len(workers) >= 2
 
 
+def test_a_cluster_that_stands_already_gives_the_same_and_is_left_standing(tmp_path: Path) -> None:
+    from distributed import Client, LocalCluster
+
+    base = Base.read(oscillator(tmp_path))
+    asked = [[f"a.mass={mass}"] for mass in (1.0, 2.0, 3.0)]
+    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=":0") as cluster:
+        with Crew(scheduler=cluster.scheduler_address) as crew:
+            flown = crew.fly_all(base, asked)
+        with Client(cluster.scheduler_address, set_as_default=False) as client:
+            assert len(client.scheduler_info()["workers"]) == 1
+    assert [landing.outputs for landing in flown] == [land(base, its).outputs for its in asked]
+
+
 def test_a_scheduler_that_is_not_there_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("orchestrator.campaign.crew.ANSWERS_WITHIN", 1.0)
     nowhere = "tcp://127.0.0.1:9"
