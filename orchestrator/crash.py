@@ -33,9 +33,14 @@ def last_words(say: Callable[[str], None]) -> Iterator[None]:
         say(signal.Signals(number).name)
 
     handler = ctypes.CFUNCTYPE(None, ctypes.c_int)(crashed)
-    before = [libc.signal(each, ctypes.cast(handler, ctypes.c_void_p)) for each in SIGNALS]
+    caught = []
+    for each in SIGNALS:
+        if before := libc.signal(each, ctypes.cast(handler, ctypes.c_void_p)):
+            libc.signal(each, before)  # a runtime inside a unit (Java, .NET) lives by its own
+        else:
+            caught.append(each)
     try:
         yield
     finally:
-        for each, old in zip(SIGNALS, before, strict=True):
-            libc.signal(each, old)
+        for each in caught:
+            libc.signal(each, None)

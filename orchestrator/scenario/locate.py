@@ -64,6 +64,9 @@ def find_fmu(fmu: str, folder: Path, unit: str) -> Path:
     if path.is_file():
         return path
     there = [p.stem for p in path.parent.glob("*.fmu")] if path.parent.is_dir() else []
+    if not there and is_path(fmu):
+        build = "build it (those in C: python examples/c_units/build.py)"
+        raise UnitError(f"{unit}: {path}: no such FMU, nor any other in that folder; {build} or correct the path")
     if not there:
         raise UnitError(f"{unit}: {path}: no such FMU, nor any other in that folder; build them (python build_fmus.py) or set `fmus`")
     raise UnitError(f"{unit}: {path}: no such FMU; {nearest(path.stem, there)}")
