@@ -1,7 +1,7 @@
 """A unit in a process of its own: what crashes there is a line here.
 
-Costs some 0.1 ms a step. The child (child.py) holds the unit; both sides keep a copy of the unit's vectors. Text goes as text, because its
-numbers are each process's own.
+A message a call, 0.06 ms in the median. The child (child.py) holds the unit; both sides keep a copy of its vectors. Text goes as text,
+because its numbers are each process's own.
 """
 
 from __future__ import annotations
