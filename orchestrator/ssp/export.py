@@ -23,6 +23,7 @@ _NAME = re.compile(r"[A-Za-z0-9_+.\-]+")
 _MADE = (1980, 1, 1, 0, 0, 0)
 """Times of all members: the same scenario and FMUs give the same file to the byte."""
 
+_IN_THE_DESCRIPTION = ("fmu", "parameters")
 _AS_KIND: dict[Kind, Callable[[float], Value]] = {Kind.REAL: float, Kind.INTEGER: int, Kind.BOOLEAN: bool}
 
 
@@ -34,6 +35,15 @@ class Contents:
     files: dict[str, Path] = field(default_factory=dict)
     hashes: dict[str, str] = field(default_factory=dict)
     """SHA-256 of an FMU -> its name in the archive."""
+
+    def beside(self, path: Path) -> str:
+        """The name a file gets that the annotation mentions; another of that name gets another."""
+        member, number = f"{RESOURCES}/{path.name}", 1
+        while member in self.files and self.files[member].resolve() != path.resolve():
+            number += 1
+            member = f"{RESOURCES}/{path.stem}-{number}{path.suffix}"
+        self.files[member] = path
+        return member
 
     def fmu(self, path: Path, sha256: str) -> str:
         """The name an FMU gets; two versions of one unit get two."""
@@ -105,12 +115,13 @@ def _annotation(contents: Contents, blueprint: Blueprint) -> dict[str, Any]:
     tree = blueprint.scenario.as_run()
     for key in ("fmus", "start_time", "stop_time"):
         tree.pop(key, None)
-    tree["units"] = {u.name: {"once": True} for u in blueprint.scenario.units if u.once}
-    found = references.find(tree.get("results", {}).get("references"), references.folders_of(blueprint.path))
-    if found is not None:
-        member = f"{RESOURCES}/{found.name}"
-        contents.files[member] = found
-        tree["results"] = tree["results"] | {"references": member}
+    manners = {name: {key: value for key, value in unit.items() if key not in _IN_THE_DESCRIPTION} for name, unit in tree["units"].items()}
+    tree["units"] = {name: manner for name, manner in manners.items() if any(manner.values())}
+    published = references.find(tree.get("results", {}).get("references"), references.folders_of(blueprint.path))
+    height_map = tree.get("terrain", {}).get("file")
+    for table, key, path in (("results", "references", published), ("terrain", "file", height_map)):
+        if path is not None:
+            tree[table] = tree[table] | {key: contents.beside(Path(path))}
     return {key: value for key, value in tree.items() if value not in ({}, [], "")}
 
 

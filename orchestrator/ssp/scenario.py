@@ -40,9 +40,10 @@ def read_system(path: Path, variant: str = "") -> Tree:
     tree["connections"] = _connections(archive, structure, interfaces, wires, own.get("connections"))
     if not own:
         tree["master"] = _steps(archive)
-    references = archive.folder / own.get("results", {}).get("references", "")
-    if references.is_file():
-        tree["results"] = own["results"] | {"references": str(references)}
+    for table, key in (("results", "references"), ("terrain", "file")):
+        beside = archive.folder / own.get(table, {}).get(key, "")
+        if beside.is_file():
+            tree[table] = own[table] | {key: str(beside)}
     return tree
 
 

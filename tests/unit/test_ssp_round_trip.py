@@ -45,6 +45,15 @@ def test_a_changed_parameter_solves_the_start_condition_again(tmp_path: Path) ->
     assert other["body.body.position[1]"][0] == pytest.approx(one["body.body.position[1]"][0], abs=1e-9)         # m
 
 
+@built
+def test_nothing_in_the_file_points_at_this_machine(tmp_path: Path) -> None:
+    ssp = exported(ROOT / "scenarios" / "apollo11_dem.toml", tmp_path / "dem.ssp")
+    assert str(ROOT).encode() not in etree.tostring(description(ssp))
+    ground = read_scenario(ssp).table.terrain
+    assert ground is not None
+    assert Path(ground.file or "").read_bytes() == (ROOT / "scenarios" / "terrain" / "site.npy").read_bytes()
+
+
 def _given(ssp: Path) -> dict[tuple[str, str], str]:
     return {
         (component.get("name"), parameter.get("name")): parameter[0].get("value")
