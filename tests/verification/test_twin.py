@@ -102,6 +102,20 @@ def test_a_stretch_on_the_ground_against_radau() -> None:
     assert legs < 1e-5
 
 
+def test_an_interval_that_needs_too_many_steps_is_given_up() -> None:
+    """Verifies: a stretch at a tolerance that no step keeps ends, and says that it failed.
+    Setup: 1 ms on the ground at 1e-30 m/s: every step would be 1 ns long, and the interval a million of them.
+    Tolerance: the steps allowed, 2000 and half a million a second, and the one that was too many.
+    """
+    craft = vehicle()
+    flight = started(craft)
+    a = np.zeros((5, 6))
+    start_accelerations(craft, ENGINE_OFF, flight, a)
+    progress = integrate(craft, ENGINE_OFF, Settings(1e-30, 1e-3, 1e-6), flight, a, np.zeros((5, 4)), -np.ones(4), 0.0, 1e-3)
+    assert not progress.ok
+    assert progress.steps + progress.rejected == 2501
+
+
 def test_starting_accelerations_stand_still(random: np.random.Generator) -> None:
     """Verifies: the accelerations at the start solve the equations to the end, with legs in motion.
     Setup: change of the twin's velocities over 0.1 microseconds against them.

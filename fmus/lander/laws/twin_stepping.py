@@ -40,6 +40,7 @@ from .vectors import ZERO, add, apply, apply_transposed, axpy, cross, from_rotat
 Array = NDArray[np.float64]
 ERROR_CONSTANT = 0.0404  # of SDIRK2: 3 γ² - 2 γ³ - 1/6
 SMALLEST = 1e-9  # s
+MOST = (2000, 5e5)  # tries of an interval, and more a second: one that takes more would seem to hang
 LOCATED = 1e-5  # s: how near after the first contact a step ends, for an engine inside to act on it
 TIGHTEST = 1e-10  # m/s, of Newton
 NEWTON_STEPS = 12  # before a step is refused
@@ -238,7 +239,7 @@ def integrate(
 
 @jit
 def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, ride: Ride, time: float, interval: float) -> Progress:
-    """Take the ride over `interval` (s) from `time`, in place."""
+    """Take the ride over `interval` (s) from `time`, in place; not ok where Newton fails or the steps grow too many."""
     f, a, ledger, touch, bob = ride
     n = len(vehicle.legs)
     work, newton = scratch(n), newton_of(settings.tolerance)
@@ -248,6 +249,8 @@ def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, 
     locating = effects.active and guided(effects.tail)
     early, late, sway = nothing_attached(), nothing_attached(), sway_of(bob)
     while interval - t > 1e-12:
+        if steps + rejected > MOST[0] + MOST[1] * interval:
+            return Progress(False, h, steps, rejected)
         left = interval - t
         contact = first_touch(touch)
         if effects.active:
