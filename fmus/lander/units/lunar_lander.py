@@ -197,7 +197,7 @@ class LunarLander(Unit):
         done = fly_and_show(self.vehicle, self.effects, self.engine(), settings, self.ride, time, step, *self.outputs)
         if not done.ok:
             self.refuse_gaps(self.vehicle.pad.radius)
-            raise UnitError(f"the equations did not converge, or need too many steps, at steps of {done.next_step:.3g} s; a larger tolerance may do")
+            raise UnitError(f"no convergence, or too many steps, at steps of {done.next_step:.3g} s; a larger tolerance may do")
         self["next_step"] = done.next_step
         self["steps"] += done.steps
         self["rejected"] += done.rejected
