@@ -13,7 +13,7 @@ from .compiled import jit
 from .soil import UNLATCHED, Soil, friction_bend, friction_scale, latched, normal_force, tangential_force
 from .surface import Surface, depth_at, laid_down, normal_at
 from .tangent_term import tangent_term
-from .turning import Hold, with_turning
+from .turning import with_turning
 from .vectors import (
     ZERO,
     Matrix,
@@ -140,8 +140,7 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
         k_i = plus(times(push.stiffness, outer(along, normal)), times(soil.plowing, plane))
         turn = times(friction_bend(soil, speed, k), outer(slip, slip))
         c_i = plus(times(push.damping, outer(along, normal)), times(grip * k, plus(plane, turn)))
-        hold = Hold(push.force, push.stiffness, push.damping, along, times(grip * k, plus(identity(1.0), turn)))
-        k_i = with_turning(k_i, surface, surface.relief, place, velocity, hold)
+        k_i = with_turning(k_i, surface, surface.relief, place, velocity, push, along, grip * k, turn)
         if soil.effects.tangent_term.coefficient != 0.0:
             term = tangent_term(soil.effects.tangent_term, depth, slip, slide, normal, plane)
             f, k_i, c_i = add(f, term.force), plus(k_i, term.stiffness), plus(c_i, term.damping)
