@@ -48,6 +48,7 @@ def main() -> None:
     asked.add_argument("--generations", type=int, default=6)
     asked.add_argument("--seed", type=int, default=15)
     given = asked.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
     plan, random = Campaign.read(CAMPAIGN), np.random.default_rng(given.seed)
     shares, rows = np.empty((0, len(plan.addresses))), list[dict[str, Any]]()
     with Crew(given.workers) as crew:
@@ -58,9 +59,8 @@ def main() -> None:
             nearest = min(rows, key=lambda row: float(row["distance"]))
             inside = sum(row["inside"] for row in rows)
             so_far = f"nearest {nearest['distance']:.2f}, all facts inside: {inside}"
+            (given.out / "landings.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
             print(f"generation {generation}: {len(rows)} landings, {so_far}", flush=True)
-    given.out.mkdir(parents=True, exist_ok=True)
-    (given.out / "landings.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     report(rows, list(plan.addresses))
 
 
