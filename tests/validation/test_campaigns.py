@@ -21,6 +21,19 @@ def test_a_campaign_can_be_read_and_every_address_is_a_parameter(path: Path) -> 
     assert len(plan.overrides(0)) >= len(plan.addresses)
 
 
+def test_apollo_15s_base_landing_stands_on_its_slope() -> None:
+    """Setup: the middle of the campaign's bounds, 1.4 m/s down onto 10.9 deg. It is to be flown and trusted, not to be right.
+
+    Tolerance: pads sunk and struts stroked unequally lean the vehicle a few degrees beyond the slope, never by as much as the slope.
+    """
+    landing = land(Campaign.read(CAMPAIGNS / "apollo15.toml").base, ())
+    assert (landing.outcome, landing.trusted) == ("stands", True)
+    pitch = landing.outputs["final_attitude_deg.pitch"]
+    assert isinstance(pitch, float)
+    assert 10.9 < pitch < 2 * 10.9
+    assert landing.outputs["final_attitude_deg.roll"] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_landings_of_apollo_11_by_kept_units_are_those_of_fresh_ones_to_the_last_bit(tmp_path: Path) -> None:
     plan = Campaign.read(CAMPAIGNS / "apollo11_scatter.toml")
     its = plan.overrides(3)
