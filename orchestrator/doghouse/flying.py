@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -16,6 +17,8 @@ from orchestrator.doghouse.landing import Inputs, Margins, margins_of, overrides
 from orchestrator.doghouse.model import Flown
 from orchestrator.errors import ScenarioError
 
+PLACES = re.compile(r'^(fmu|references) = ".*"$', re.MULTILINE)
+"""Lines of a scenario that say where files lie, by which its landings are no others."""
 Heard = Callable[[str, int, int], None]
 """Called with the stage, how many of its landings are done, and of how many."""
 
@@ -41,7 +44,8 @@ class Scenario:
             raise ScenarioError(f"{where}.set.velocity: has {len(addresses['velocity'])} elements, expects 3; name a vector with [*]")
         base = Base.read(path)
         units = sorted({interface.sha256 for interface in drawn.interfaces.values()})
-        return cls(path, base, addresses, hashlib.sha256("\n".join([base.text, *units]).encode()).hexdigest())
+        text = PLACES.sub("", base.text)
+        return cls(path, base, addresses, hashlib.sha256("\n".join([text, *units]).encode()).hexdigest())
 
     def overrides(self, inputs: Inputs) -> list[str]:
         return overrides(inputs, self.addresses)
