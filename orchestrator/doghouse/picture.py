@@ -49,8 +49,11 @@ def _house(axes: Axes, outcome: Outcome) -> None:
     axes.fill(outline[:, 0], outline[:, 1], color=HOUSE, zorder=0)
     axes.plot(outline[1:, 0], outline[1:, 1], color=WALL, linewidth=2.2, zorder=3, solid_joinstyle="miter")
     axes.text(0.5 * wall, 0.42 * eaves, "certified", ha="center", fontsize=12, color=WALL, style="italic")
-    axes.text(0.03, ridge - 0.19, f"{ridge / FOOT:.0f} ft/s", fontsize=8, color=WALL)
-    axes.text(wall - 0.04, eaves - 0.26, f"{wall / FOOT:.0f}, {eaves / FOOT:.0f} ft/s", fontsize=8, color=WALL, ha="right")
+    for place, text, offset, side in (
+        ((0.0, ridge), f"{ridge / FOOT:.0f} ft/s", (6.0, -18.0), "left"),
+        ((wall, eaves), f"{wall / FOOT:.0f}, {eaves / FOOT:.0f} ft/s", (-6.0, -14.0), "right"),
+    ):
+        axes.annotate(text, place, offset, textcoords="offset points", fontsize=8, color=WALL, ha=side)
 
 
 def _boundary(axes: Axes, outcome: Outcome, name: str) -> None:
