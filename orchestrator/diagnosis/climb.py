@@ -36,13 +36,13 @@ Path = tuple[Rung, ...]
 
 
 def climbed(
-    landings: Landings, nuisances: Sequence[Coordinate], fresh: Sequence[int], horizons: Sequence[float], starts: Sequence[Array], run: Run
+    landings: Landings, nuisances: Sequence[Coordinate], horizons: Sequence[float], starts: Sequence[Array], run: Run
 ) -> list[Path]:
     """Climbs of all horizons, the best first; empty where none of the starts can be flown."""
     paths: list[Path] = [() for _ in starts[: ABREAST[0]]]
     ends = list(starts[: ABREAST[0]])
     for place, horizon in enumerate(horizons):
-        tasks = [Climb(landings, tuple(nuisances), z, horizon, tuple(fresh), gently=place == 0) for z in ends]
+        tasks = [Climb(landings, tuple(nuisances), z, horizon, gently=place == 0) for z in ends]
         rungs = [(path, Rung(*made)) for path, made in zip(paths, run("base fit", tasks), strict=True) if made is not None]
         paths = distinct([(*path, rung) for path, rung in rungs])[: ABREAST[min(place + 1, len(ABREAST) - 1)]]
         ends = [path[-1].fit.z for path in paths]

@@ -49,7 +49,7 @@ class Search:
         self.landings, self.crew, self.seed = landings, crew, seed
         self.nuisances = (*nuisances, *tolerances)
         self.fresh = tuple(range(len(nuisances)))
-        """Columns made anew along the way; those of the tolerances are made at the whole landing, once."""
+        """Columns made anew beside hypotheses; the base climb makes those of the tolerances anew as well."""
         self.horizons = (*(h for h in HORIZONS if self._adds(h)), np.inf)
         self.told = told or (lambda stage, best, share: None)
         self.leader = ""
@@ -71,7 +71,7 @@ class Search:
 
     def base(self, starts: Sequence[Array] = ()) -> Fit:
         """The nuisances fitted to the base scenario, climbing from `starts`, or from the best of many draws of their priors."""
-        paths = climbed(self.landings, self.nuisances, self.fresh, self.horizons, starts or self._best_draws(), self.run)
+        paths = climbed(self.landings, self.nuisances, self.horizons, starts or self._best_draws(), self.run)
         if not paths:
             raise UnflyableError
         self.path = paths[0]

@@ -68,8 +68,6 @@ class Climb:
     nuisances: tuple[Coordinate, ...]
     z: Array
     horizon: float
-    fresh: tuple[int, ...]
-    """Columns worth making anew at every horizon; the others (tolerances) stay put until the last."""
     gently: bool = False
     """With threefold noise first: from a draw of the prior, not from where a shorter horizon ended."""
 
@@ -79,15 +77,14 @@ class Climb:
         predicted = model.predict(self.z)
         if predicted is None:
             return None
-        which = self.fresh if self.horizon < np.inf else tuple(range(len(self.z)))
-        slopes = np.zeros((len(predicted), len(self.z)))
-        slopes[:, list(which)] = model.slopes(self.z, predicted, which)
+        slopes = model.slopes(self.z, predicted)
+        every = tuple(range(len(self.z)))
         began = Point(self.z, predicted, slopes, self.horizon)
         fit: Fit | None = None
         if self.gently:
-            fit = fitted(model, self.z, slopes, predicted, temper=3.0, steps=4, renew=self.fresh)
+            fit = fitted(model, self.z, slopes, predicted, temper=3.0, steps=4, renew=every)
         z, slopes, predicted = (fit.z, fit.slopes, fit.predicted) if fit else (self.z, slopes, predicted)
-        fit = fitted(model, z, slopes, predicted, steps=8, renew=self.fresh, renewals=2)
+        fit = fitted(model, z, slopes, predicted, steps=8, renew=every, renewals=2)
         return None if fit is None else (began, fit)
 
 
