@@ -17,16 +17,18 @@ from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Landings, Model, Nobody
 from orchestrator.diagnosis.race import Runner, raced
-from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine
+from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, Shake
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
 """Called with the stage, the best hypothesis so far, and the share of the stage done."""
 HORIZONS = (0.3, 0.55, 0.8, 1.2)  # s since first contact, before the whole
 DRAWS = 100  # of the nuisances from their priors, flown to the first horizon
+LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
+SHAKEN = 4  # draws of a finalist's posterior that it is fitted from once more
 
 
 class UnflyableError(Exception):
@@ -76,7 +78,8 @@ class Search:
             raise UnflyableError
         self.path = paths[0]
         self.beginnings = tuple(path[0].fit.z for path in distinct([path[:1] for path in paths]))
-        return self.refine_all([self.path[-1].fit], "base fit", everything=True)[0]
+        refined = self.refine_all([self.path[-1].fit], "base fit", everything=True)
+        return self.shaken(refined, "base fit")[0]
 
     def _best_draws(self) -> list[Array]:
         random = np.random.default_rng(self.seed)
@@ -144,7 +147,8 @@ class Search:
         ranked = sorted(fits, key=lambda name: -fits[name].log_evidence)
         self.leader = ranked[0]
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
-        return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
+        refined = self.refine_all([fits[n] for n in top], "finalists")
+        return fits | dict(zip(top, self.shaken(refined, "finalists"), strict=True))
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
@@ -174,12 +178,25 @@ class Search:
         (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
         return None if predicted is None else Point(z, predicted, fit.slopes[:, :count], np.inf)
 
+    def shaken(self, fits: Sequence[Fit], stage: str) -> list[Fit]:
+        """Each fit, or the best of those that draws of its posterior lead to where one is better, with fresh slopes there."""
+        tasks = [Shake(self.landings, fit, self._renewed(fit), self.seed + k) for fit in fits for k in range(SHAKEN)]
+        ends = self.run(stage, tasks)
+        better: dict[int, Fit] = {}
+        for i, fit in enumerate(fits):
+            below = [e for e in ends[i * SHAKEN : (i + 1) * SHAKEN] if e is not None and e.objective < fit.objective - LEAST]
+            if below:
+                better[i] = min(below, key=lambda e: e.objective)
+        again = dict(zip(better, self.refine_all(list(better.values()), stage), strict=True))
+        return [again.get(i, fit) for i, fit in enumerate(fits)]
+
+    def _renewed(self, fit: Fit) -> tuple[int, ...]:
+        """Columns made anew beside a hypothesis: those of the nuisances proper, and its own."""
+        return (*self.fresh, *range(len(self.nuisances), len(fit.z)))
+
     def refine_all(self, fits: Sequence[Fit], stage: str, everything: bool = False) -> list[Fit]:
         """Fresh slopes of the nuisances and of the hypothesis' own; of the tolerances too with `everything`."""
-        tasks = []
-        for fit in fits:
-            own = range(len(self.nuisances), len(fit.z))
-            tasks.append(Refine(self.landings, fit, tuple(range(len(fit.z))) if everything else (*self.fresh, *own)))
+        tasks = [Refine(self.landings, fit, tuple(range(len(fit.z))) if everything else self._renewed(fit)) for fit in fits]
         return list(self.run(stage, tasks))
 
     def run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
@@ -204,7 +221,7 @@ def explains(chi2: float, count: float) -> bool:
 
 def _better(found: dict[str, Fit | None] | dict[str, Fit], fits: dict[str, Fit]) -> dict[str, Fit]:
     """Those that are better by more than what the integrator leaves to chance."""
-    return {n: f for n, f in found.items() if f is not None and (n not in fits or f.objective < fits[n].objective - 0.5)}
+    return {n: f for n, f in found.items() if f is not None and (n not in fits or f.objective < fits[n].objective - LEAST)}
 
 
 __all__ = ["Search", "UnflyableError"]

@@ -12,16 +12,21 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
+import tomli_w
 from hosted import OK, Hosted
+
+from orchestrator.blueprint import draw_up, read_scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-import hosts  # noqa: E402  # it stands with the benchmarks, which measure these hosts
+import hosts  # noqa: E402  # they stand with the benchmarks, which measure these hosts
+import task as tasks  # noqa: E402
 
 Host = Callable[..., Hosted]
 STEP, STOP = 1e-3, 0.03
 OUTPUTS_WATCHED = 12
+AS = {"Real": float, "Integer": int, "Boolean": bool, "String": str}
 
 
 def first_row(fmu: Path) -> tuple[dict[str, float], dict[str, float]]:
@@ -42,17 +47,17 @@ def experiment(name: str, fmu: Path) -> tuple[dict[str, float], list[Any]]:
 
 
 @pytest.fixture(scope="module")
-def task(fmus: dict[str, Path]) -> dict[str, Any]:
-    """A job for benchmarks/peers: all units beside each other, each on its own."""
-    units, start, watch = [], [], []
+def task(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """A job for benchmarks/peers: all units beside each other, each on its own, in an .ssp."""
+    units, watch = {}, []
     for name, fmu in fmus.items():
-        variables = {v.name: v for v in fmpy.read_model_description(str(fmu)).modelVariables}
         values, outputs = experiment(name, fmu)
-        units.append({"name": name, "fmu": str(fmu)})
-        start += [(name, key, variables[key].valueReference, variables[key].type, value) for key, value in values.items()]
-        watch += [(name, v.name, v.valueReference) for v in outputs]
-    return {"units": units, "start": start, "links": [], "bonds": [], "watch": watch, "stop": STOP, "step": STEP, "tolerance": 1e-6,
-            "method": "fixed"}
+        kinds = {v.name: AS[v.type] for v in fmpy.read_model_description(str(fmu)).modelVariables}
+        units[name] = {"fmu": str(fmu), "parameters": {key: kinds[key](value) for key, value in values.items()}}
+        watch += [f"{name}.{v.name}" for v in outputs]
+    scenario = tmp_path_factory.mktemp("hosts") / "units.toml"
+    scenario.write_text(tomli_w.dumps({"title": "Units beside each other", "stop_time": STOP, "units": units}), "utf-8")
+    return tasks.task_of(draw_up(read_scenario(scenario), scenario), watch) | {"step": STEP}
 
 
 @pytest.fixture(scope="module")
