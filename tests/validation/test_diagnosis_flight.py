@@ -31,6 +31,7 @@ from orchestrator.diagnosis.proof import Belief, Observed, in_sigmas, prove
 from orchestrator.diagnosis.revision import write_revision
 from orchestrator.diagnosis.term_fmu import build_term_fmu
 from orchestrator.diagnosis.twin_parameters import twin_parameters
+from orchestrator.scenario.read import read_table
 from orchestrator.simulation import run_scenario
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
@@ -242,7 +243,8 @@ def test_the_revised_scenario_runs_from_the_command_line(zupp: CoSimulation, tmp
 def test_a_found_term_s_fmu_in_the_coupling_does_what_the_parameters_do(zupp: CoSimulation, tmp_path: Path) -> None:
     parameters = {"normal_term": 900.0, "normal_term_rate": 2.0, "normal_term_phase": 1}
     fmu = build_term_fmu(tmp_path, zupp.addresses.folder / "RegolithContact.fmu", parameters, "SoilMomentum")
-    changes = {"stop_time": 0.25, "units": {"soil{leg}": {"fmu": str(fmu)}}}
+    as_they_were = read_table(SCENARIOS / "apollo11_zupp.toml")["units"]["soil{leg}"]["parameters"]
+    changes = {"stop_time": 0.25, "units": {"soil{leg}": {"fmu": str(fmu), "parameters": as_they_were}}}
     replaced = run_scenario(SCENARIOS / "apollo11_zupp.toml", changes=changes)
     tree = overlay(zupp.addresses, {f"soil.{name}": float(value) for name, value in parameters.items()})
     told = run_scenario(SCENARIOS / "apollo11_zupp.toml", changes={"stop_time": 0.25, **tree})
