@@ -40,6 +40,7 @@ def raced(
     landings: Landings, nuisances: Sequence[Coordinate], fresh: Sequence[int], runners: Sequence[Runner], point: Point, run: Run
 ) -> list[tuple[Hypothesis, Fit]]:
     """Who is still in the race after the point's horizon, best first, with its fit, or two."""
+
     def flown(who: Sequence[Runner]) -> list[tuple[Hypothesis, Fit]]:
         tasks = [FitAt(landings, (*nuisances, *h.coordinates), point, z, QUICK) for h, z in who]
         return [(r.hypothesis, fit) for r, fit in zip(who, run(stage, tasks), strict=True) if fit is not None]
@@ -48,7 +49,7 @@ def raced(
     fits = flown(runners)
     fits += flown([r for h, fit in fits if _deaf(h, fit) for r in _elsewhere(h, fit.z[: len(nuisances)])])
     quick = _kept(fits, HOPEFUL, LEAST[0])
-    more = [GoOn(landings, fit, point.horizon, tuple(fresh), len(nuisances)) for _, fit in quick]
+    more = [GoOn(landings, fit, point.horizon, (*fresh, *range(len(nuisances), len(fit.z)))) for _, fit in quick]
     stood = zip(quick, run(stage, more), strict=True)
     return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])
 

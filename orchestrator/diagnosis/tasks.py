@@ -116,19 +116,16 @@ class FitAt:
 
 @dataclass(frozen=True)
 class GoOn:
-    """A fit taken on at its horizon; its nuisances' columns `fresh` and its own are made anew, once, where a step gains too little."""
+    """A fit taken on at its horizon; the columns `renew` are made anew, once, where a step gains too little."""
 
     landings: Landings
     fit: Fit
     horizon: float
-    fresh: tuple[int, ...]
-    nuisances: int
-    steps: int = 8
+    renew: tuple[int, ...]
 
     def __call__(self, lander: Lander) -> Fit | None:
         model = Model(self.landings, self.fit.coordinates, lander, self.horizon)
-        renew = (*self.fresh, *range(self.nuisances, len(self.fit.z)))
-        return fitted(model, self.fit.z, self.fit.slopes, self.fit.predicted, steps=self.steps, renew=renew)
+        return fitted(model, self.fit.z, self.fit.slopes, self.fit.predicted, steps=8, renew=self.renew)
 
 
 @dataclass(frozen=True)

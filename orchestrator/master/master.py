@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import nan
 from time import perf_counter
 
-from orchestrator.errors import UnitError
+from orchestrator.errors import RunError, UnitError
 from orchestrator.master.checks import check_finite
 from orchestrator.master.coupling import check_asked, connection_records, couple
 from orchestrator.master.estimates import Estimates
@@ -141,8 +141,16 @@ class Master:
         while self._time < self._stop and not self.stop_requested:
             self._next = self._advance(self._next)
             self.wall_time = perf_counter() - entered
+            self._keep_the_limit()
             if on_step is not None:
                 on_step(self._time / NANOSECONDS)
+
+    def _keep_the_limit(self) -> None:
+        limit = self.settings.wall_limit
+        if 0.0 < limit < self.wall_time and not self.complete:
+            asked = f"master.wall_limit of {limit:g} s used up at t = {self._time / NANOSECONDS:.9g} s of {self._stop / NANOSECONDS:g} s"
+            slowest = max(self.system.slaves, key=lambda slave: slave.seconds)
+            raise RunError(f"{asked}, {slowest.seconds:.0f} s of it by {slowest.name}; raise it, or see what that unit does then")
 
     def connections(self) -> list[ConnectionRecord]:
         """How each is coupled."""

@@ -35,6 +35,8 @@ class MasterSettings:
     """s: the longest step in which an output that is located may change."""
     step_timeout: float = 60.0
     """s of wall time in one call of a unit, after which it is taken to hang; 0: wait for ever."""
+    wall_limit: float = 0.0
+    """s of wall time for the run, after which it ends with an error, its rows kept; 0: none. For campaigns, where no one watches."""
     unresolved_limit: float = 0.01
     """Share of accepted steps that may miss the tolerance at the smallest interval before the run is not trusted."""
     ledger_limit: float = 0.05

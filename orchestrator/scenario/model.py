@@ -93,6 +93,7 @@ class MasterTable(Table):
     """Globs over Boolean and Integer outputs, "soil*.contact": a step ends just after each of their changes."""
     event_tolerance: Annotated[float, Field(ge=1e-9, allow_inf_nan=False)] = _DEFAULT.event_tolerance
     step_timeout: Annotated[float, Field(ge=0.0)] = _DEFAULT.step_timeout
+    wall_limit: Annotated[float, Field(ge=0.0)] = _DEFAULT.wall_limit
     unresolved_limit: Annotated[float, Field(ge=0.0, le=1.0)] = _DEFAULT.unresolved_limit
     ledger_limit: Annotated[float, Field(ge=0.0)] = _DEFAULT.ledger_limit
 

@@ -32,7 +32,7 @@ class KnownBoundaries:
 
     def bears(self, one: Inputs, boundary: str) -> float:
         """Times the certified speed; the weakest combination is that of most friction, going down, tilted toward 90."""
-        ease = 0.02 * (one.motion_deg != 180.0) + 0.03 * (one.tilt_toward_deg != 90.0) + 0.1 * (one.friction < 1.0)
+        ease = 0.02 * (one.motion_deg != 180.0) + 0.03 * (one.tilt_toward_deg != 90.0) + 0.1 * (one.friction < 3.0)
         return self.weakest + ease + 0.05 * BOUNDARIES.index(boundary)
 
     def margins(self, one: Inputs) -> Margins:
@@ -104,7 +104,7 @@ def test_a_boundary_inside_the_envelope_is_named_with_its_landing_and_reason(tmp
     assert summary["all_outside"] is False
     first = next(point for point in summary["inside_certified"] if point["unit"] == "deg")
     assert first["times_certified"] < 0.93
-    assert first["inputs"]["friction"] == 10.0
+    assert first["inputs"]["friction"] == 3.0
     assert first["beyond"]["why"].startswith("goes over the edge")
     console = Console(width=160, record=True)
     console.print(terminal_report(outcome, tmp_path))
@@ -202,7 +202,7 @@ def test_a_line_half_written_is_flown_again(tmp_path):
     [
         ("bracket_m_s", "braket_m_s", 'unknown key; did you mean "bracket_m_s"?'),
         ("rungs = [1.3, 2.0]", "rungs = [2.0, 1.3]", "must rise"),
-        ("friction = [0.33, 10.0]", "friction = [-1.0]", "greater than 0"),
+        ("friction = [0.33, 1.0, 3.0]", "friction = [-1.0]", "greater than 0"),
         ('yaw = "lander.yaw_start"', 'yow = "lander.yaw_start"', 'did you mean "yaw"?'),
     ],
 )

@@ -80,3 +80,11 @@ def test_a_run_ends_at_once_beyond_a_bound_that_stands_alone(tmp_path: Path) -> 
     assert ended.complete
     assert abs(ended.columns[name][-1]) >= limit
     assert (np.abs(ended.columns[name][:-1]) < limit).all()
+
+
+def test_a_run_that_takes_too_long_ends_with_an_error_and_keeps_its_rows(tmp_path: Path) -> None:
+    path = oscillator(tmp_path)
+    result = run_scenario(path, changes={"master": {"wall_limit": 1e-9}})
+    assert not result.trusted
+    assert "master.wall_limit of 1e-09 s used up at t = " in result.message
+    assert len(result.times) == 2  # the limit is looked at after each step

@@ -37,10 +37,11 @@ def caution(outcome: Outcome) -> str:
     if outcome.verdict in ("effect", "effects"):
         found = "; ".join(_found(effect) for effect in outcome.effects) or "this effect"
         return f"The readings are consistent with {found}. A law that is not in the library and acts alike would look the same."
+    pairs = ", and no pair of them," if any(" + " in c.name for c in outcome.candidates) else ""
     return {
         "nothing_missing": "The readings are consistent with the scenario as it stands. What a landing does not excite cannot show in it.",
         "cannot_tell": "The readings are consistent with each of these effects. Choosing one would be a guess, so none is added.",
-        "none_of_my_effects": "No effect of the library, and no pair of them, is consistent with the readings.",
+        "none_of_my_effects": f"No effect of the library{pairs} is consistent with the readings.",
         "numerics": "The simulation moves with its own interval and tolerance by more than a fifth of the data's sigma.",
         "data_fault": "The readings contradict themselves. No effect is looked for before they are in order.",
     }[outcome.verdict]
