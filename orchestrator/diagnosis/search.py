@@ -132,8 +132,8 @@ class Search:
         tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), here, tuple(h.scaled_starts())) for h in hypotheses]
         return self._best_of([h.name for h in hypotheses], self.run(stage, tasks))
 
-    def _at(self, h: Hypothesis, here: Point, own: Array, fresh: tuple[int, ...] = ()) -> FitAt:
-        return FitAt(self.landings, (*self.nuisances, *h.coordinates), here, np.concatenate([here.z, own]), 5, fresh)
+    def _at(self, h: Hypothesis, here: Point, own: Array) -> FitAt:
+        return FitAt(self.landings, (*self.nuisances, *h.coordinates), here, np.concatenate([here.z, own]), 5)
 
     def _best_of(self, names: Sequence[str], fits: Sequence[Fit | None]) -> dict[str, Fit]:
         best: dict[str, Fit] = {}
@@ -151,16 +151,14 @@ class Search:
         return fits | dict(zip(top, self.shaken(refined, "finalists"), strict=True))
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
-        """Fits of `names` tried again from the winner's nuisances, those that come near shaken there; kept where they are better."""
+        """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
         point = self._beside(fits[winner])
         if point is None:
             return fits
         known = {h.name: h for h in (*hypotheses, NULL)}
-        tasks = [self._at(known[n], point, fits[n].z[len(point.z) :], self.fresh) for n in names]
-        ends = zip(names, self.run("back-substitution", tasks), strict=True)
-        near = {n: fit for n, fit in ends if fit is not None and fit.objective < fits[n].objective + MARGIN}
-        refined = self.shaken(self.refine_all(list(near.values()), "back-substitution"), "back-substitution")
-        return fits | _better(dict(zip(near, refined, strict=True)), fits)
+        tasks = [self._at(known[n], point, fits[n].z[len(point.z) :]) for n in names]
+        better = _better(dict(zip(names, self.run("back-substitution", tasks), strict=True)), fits)
+        return fits | dict(zip(better, self.refine_all(list(better.values()), "back-substitution"), strict=True))
 
     def once_more(self, hypotheses: Sequence[Hypothesis], fits: dict[str, Fit], winner: str) -> dict[str, Fit]:
         """All hypotheses probed again from the best one's nuisances, where even that one leaves more than noise.
