@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.hypothesis import NULL
+from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import Measure
 from orchestrator.diagnosis.stages import State
 
@@ -29,7 +29,7 @@ def energies(state: State) -> dict[str, float]:
     found = {}
     for h in state.hypotheses:
         fit = state.fits.get(h.name)
-        if fit is None or " + " in h.name:
+        if fit is None or len(parts_of(h.name)) > 1:
             continue
         gram = projected(fit.jacobian[:, :count], fit.jacobian[:, count:])
         found[h.name] = float(np.linalg.eigvalsh(gram)[-1])

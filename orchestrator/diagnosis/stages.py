@@ -13,7 +13,7 @@ from orchestrator.diagnosis.align import first_contact, swapped
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
-from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import Noise, Stretch, noise_of
 from orchestrator.diagnosis.observation import Observation
@@ -148,7 +148,7 @@ def try_pairs(state: State) -> None:
     seconds = list(state.hypotheses)
     for name in singles:
         for pair, (hypothesis, fit) in fit_seconds(state.search, known[name], state.fits[name], seconds).items():
-            swapped_name = " + ".join(reversed(pair.split(" + ")))
+            swapped_name = " + ".join(reversed(parts_of(pair)))
             if swapped_name not in state.fits:
                 state.fits[pair] = fit
                 state.hypotheses.append(hypothesis)
@@ -162,7 +162,7 @@ def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list
         p = adequacy(fit, state.setup.landings).p
         gain, held = holdouts.get(name, (None, None))
         found.append(Judged(name, fit.log_evidence - null, p, gain, held))
-    singles = sum(1 for h in state.hypotheses if " + " not in h.name)
+    singles = sum(1 for h in state.hypotheses if len(parts_of(h.name)) == 1)
     return found, judge(found, singles)
 
 

@@ -24,6 +24,7 @@ from orchestrator.diagnosis.report.file_names import FileNames
 from orchestrator.diagnosis.report.numbers import chance, number, percent, signed, with_sigma
 from orchestrator.diagnosis.report.plot_dots import missed
 from orchestrator.diagnosis.report.template import flat, in_words
+from orchestrator.diagnosis.report.words import caution
 
 VOID = {"meta", "br", "link", "img", "hr"}
 SENTENCES = {
@@ -231,3 +232,10 @@ def test_a_value_between_its_bounds_misses_nothing() -> None:
     assert missed(depth, 0.012) > 0.0 > missed(depth, 0.09)  # type: ignore[operator]
     assert missed(stroke, 0.1016 + 0.00635) == pytest.approx(-1.0)
     assert missed(stroke, None) is None
+
+
+def test_pairs_are_spoken_of_where_some_were_tried() -> None:
+    found = outcome("none_of_my_effects")
+    assert caution(found) == "No effect of the library is consistent with the readings."
+    found.candidates.append(replace(found.candidates[0], name="soil_damping + swirl"))
+    assert caution(found) == "No effect of the library, and no pair of them, is consistent with the readings."

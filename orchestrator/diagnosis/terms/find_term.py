@@ -7,7 +7,7 @@ from dataclasses import replace
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
-from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.outcome import Estimate
 from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import Told
@@ -36,7 +36,7 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     search.crew, search.told = crew, told or search.told
     known = in_scenario(dictionary(), setup.addresses)
     regression = Regression(search, {n: term for n, (term, _) in known.items()}, {n: h for n, (_, h) in known.items()})
-    tried = {part for name in state.fits for part in name.split(" + ")}
+    tried = {part for name in state.fits for part in parts_of(name)}
     offered = [n for n, (term, _) in known.items() if term.equals not in tried]
     base = state.fits.get(NULL.name, state.base)
     winner = regressed(regression, base, best_of_library(state.fits), offered)
