@@ -8,19 +8,22 @@ order. Every horizon has minima of its own where the order is wrong: of twelve f
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.crew import Task
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.problem import Landings
-from orchestrator.diagnosis.tasks import Climb, Point
+from orchestrator.diagnosis.tasks import Climb, Draw, Point, Start
 
 Array = NDArray[np.float64]
-Run = Callable[[str, Sequence[Climb]], list["tuple[Point, Fit] | None"]]
-ABREAST = (10, 4, 2)  # fits at the first horizons; the last number holds for all that follow
+Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
+FIRST = 8  # fits to the first horizon
+ABREAST = 2  # of different minima that go on from each horizon
+DRAWS = (30, 2)  # of the posterior of each that goes on, and how many of them are fitted
 BEHIND = 25.0  # of φ: who is further behind the best of a horizon does not go on
 SAME = (0.3, 0.5)  # of φ, and of every z: one minimum
 
@@ -36,17 +39,37 @@ Path = tuple[Rung, ...]
 
 
 def climbed(
-    landings: Landings, nuisances: Sequence[Coordinate], horizons: Sequence[float], starts: Sequence[Array], run: Run
+    landings: Landings,
+    nuisances: Sequence[Coordinate],
+    horizons: Sequence[float],
+    starts: Sequence[Array],
+    run: Run,
+    abreast: int = ABREAST,
 ) -> list[Path]:
-    """Climbs of all horizons, the best first; empty where none of the starts can be flown."""
-    paths: list[Path] = [() for _ in starts[: ABREAST[0]]]
-    ends = list(starts[: ABREAST[0]])
-    for place, horizon in enumerate(horizons):
-        tasks = [Climb(landings, tuple(nuisances), z, horizon, gently=place == 0) for z in ends]
-        rungs = [(path, Rung(*made)) for path, made in zip(paths, run("base fit", tasks), strict=True) if made is not None]
-        paths = distinct([(*path, rung) for path, rung in rungs])[: ABREAST[min(place + 1, len(ABREAST) - 1)]]
-        ends = [path[-1].fit.z for path in paths]
+    """Climbs of all horizons, the best first, `abreast` at most; empty where none of the starts can be flown.
+
+    From where the best leaves more than noise it goes on alone: no minimum of these coordinates will do.
+    """
+    chosen = tuple(nuisances)
+    begun = run("base fit", [Start(landings, chosen, z, horizons[0]) for z in starts[:FIRST]])
+    paths = distinct([(Rung(*made),) for made in begun if made is not None])[:abreast]
+    for horizon in horizons[1:]:
+        paths = paths if not paths or explains(paths[0][-1].fit.chi2, counted(landings, paths[0][-1].point.horizon)) else paths[:1]
+        drawn = run("base fit", [Draw(landings, path[-1].fit, horizon, *DRAWS) for path in paths])
+        pairs = [(path, point) for path, points in zip(paths, drawn, strict=True) for point in points]
+        ends = run("base fit", [Climb(landings, chosen, point) for _, point in pairs])
+        paths = distinct([(*path, Rung(*made)) for (path, _), made in zip(pairs, ends, strict=True) if made is not None])[:abreast]
     return paths
+
+
+def counted(landings: Landings, horizon: float) -> float:
+    """Readings that count when the landings are flown to this horizon."""
+    return sum(float(o.weights(horizon).sum()) for o in landings.observations)
+
+
+def explains(chi2: float, count: float) -> bool:
+    """Whether a chi-square over so many rows is within three standard deviations of noise."""
+    return chi2 <= count + 3.0 * float(np.sqrt(2.0 * count))
 
 
 def distinct(paths: Sequence[Path]) -> list[Path]:

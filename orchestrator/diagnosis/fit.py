@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
 from orchestrator.diagnosis.coordinates import Coordinate, clipped
-from orchestrator.diagnosis.problem import FELT, Model
+from orchestrator.diagnosis.problem import FELT, HERE, Model
 
 Array = NDArray[np.float64]
 REACH = 2.5  # of one step in any z
 ENOUGH = 0.3  # of φ: a step that promises less is lost in what the integrator leaves to chance; Laplace credits it unflown
 TRIES = 3  # of a step, each 0.35 times the last
 CHANCE = 2.0  # of φ: what the integrator may hide of a step
+AGAIN, GAIN = 4, 1.0  # refinements of a fit at most, and of φ that one must bring to be followed by another
 POOR = 0.3  # of what was promised: the slopes are no longer those of this place
 
 
@@ -169,14 +170,14 @@ def _made(
     return None
 
 
-def refined(model: Model, fit: Fit, which: Sequence[int], steps: int = 4) -> Fit:
-    """The fit with the columns `which` of its slopes made anew at its point, taken on from there, and again if it moved far."""
-    for _ in range(2):
-        start, slopes = fit.z, fit.slopes.copy()
-        slopes[:, list(which)] = model.slopes(fit.z, fit.predicted, which, slopes)
+def refined(model: Model, fit: Fit, steps: int = 4) -> Fit:
+    """The fit with all slopes made anew at its very point, taken on from there, and again as long as that gains."""
+    for _ in range(AGAIN):
+        before = fit.objective
+        slopes = model.slopes(fit.z, fit.predicted, like=fit.slopes, felt=HERE)
         better = fitted(model, fit.z, slopes, fit.predicted, steps=steps)
         fit = better if better is not None else fit
-        if float(np.abs(fit.z - start).max(initial=0.0)) < 0.3:
+        if before - fit.objective < GAIN:
             break
     return fit
 

@@ -13,6 +13,8 @@ from orchestrator.master.slave import stem
 
 STEPPING = ("tolerance", "longest_step", "longest_substep")
 """Of the twin's own integrator: the units have theirs."""
+GROUND = "terrain."
+"""What lies on the plane: the scenario's own, moved by no coordinate."""
 AZIMUTH = "azimuth"
 _INSIDE = tuple(place for place in PLACES if place not in ("body", "gear"))
 _TWICE = {"mass": ("body.mass", "gear.vehicle_mass"), "gravity": ("body.gravity", "gear.gravity"),
@@ -25,7 +27,7 @@ def said_by_address(addresses: Addresses, values: Mapping[str, float]) -> Applie
     seen = {name: value for name, value in values.items() if name.startswith(SEEN)}
     vectors: dict[str, dict[str, float]] = {}
     for name, value in values.items():
-        if name not in seen and name not in STEPPING:
+        if name not in seen and name not in STEPPING and not name.startswith(GROUND):
             vectors.setdefault(stem(name), {})[name] = float(value)
     found: dict[str, list[float]] = {}
     for vector, elements in vectors.items():

@@ -8,7 +8,7 @@ prediction itself (slopes), so that a better knowledge of the noise costs no lan
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,8 +19,15 @@ from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.observation import Observation, of_units
 
 Array = NDArray[np.float64]
-FELT = 3.0  # standard deviations over all rows: six times what the integrator leaves to chance
+ABOUT = (3.0, np.inf)
+"""Standard deviations over all rows by which a difference is to be felt, at least and at most: the slope on the whole, for long steps from
+far off. What the integrator leaves to chance is a twentieth of the least."""
+HERE = (1.5, 5.0)
+"""The slope at the very point, where a fit is to stand: over 10 σ of mass its column turns by 45 deg."""
+FELT = ABOUT[0]
 WIDEST = 0.5  # of z
+FINE = {"tolerance": 3e-4}
+"""Of the twin, m/s. At the 3e-3 of a search φ jumps by 1 to 2 from a point to the one beside it, here by 0.07; 1.5 times the computing."""
 
 
 @dataclass
@@ -35,6 +42,10 @@ class Landings:
     @property
     def size(self) -> int:
         return sum(o.size for o in self.observations)
+
+    def finer(self) -> Landings:
+        """The same, sharing the observations, flown finely enough for a fit to stand: FINE, where the twin flies."""
+        return replace(self, bases=[{**base, **{name: value for name, value in FINE.items() if name in base}} for base in self.bases])
 
     @property
     def parts(self) -> list[slice]:
@@ -75,13 +86,13 @@ class Model:
         pairs = zip(self.landings.observations, self.landings.parts, strict=True)
         return np.asarray(np.concatenate([o.whitened(slopes[part], predicted[part]) for o, part in pairs]) * self.weights[:, None])
 
-    def slope(self, i: int, z: Array, predicted: Array, first: float) -> Array:
-        """Derivative of the prediction by z_i, by a difference that is felt: by FELT standard deviations in all, or z = WIDEST.
+    def slope(self, i: int, z: Array, predicted: Array, first: float, felt: tuple[float, float] = ABOUT) -> Array:
+        """Derivative of the prediction by z_i, by a difference felt as asked, or of z = WIDEST.
 
         first: the difference to try first.
         """
         low, high = self.coordinates[i].bounds
-        step = first
+        step, large = first, np.inf
         slope = np.zeros(len(predicted))
         while True:
             sign = -1.0 if z[i] + step > high and z[i] - step >= low else 1.0
@@ -90,10 +101,13 @@ class Model:
             if found is None:
                 return slope
             slope = found
-            felt = float(np.linalg.norm(self.whitened(slope[:, None], predicted))) * step
-            if felt >= FELT or step >= WIDEST:
+            now = float(np.linalg.norm(self.whitened(slope[:, None], predicted))) * step
+            if now > felt[1] and large == np.inf:
+                large, step = step, step * 1.5 * felt[0] / now
+            elif now >= felt[0] or step >= min(WIDEST, 0.5 * large):
                 return slope
-            step = min(WIDEST, step * min(8.0, max(2.0, 1.5 * FELT / max(felt, 1e-9))))
+            else:
+                step = min(WIDEST, 0.5 * large, step * min(8.0, max(2.0, 1.5 * felt[0] / max(now, 1e-9))))
 
     def _difference(self, i: int, z: Array, predicted: Array, step: float) -> Array | None:
         moved = z.copy()
@@ -101,7 +115,9 @@ class Model:
         there = self.predict(moved, (z, predicted))
         return None if there is None else (there - predicted) / step
 
-    def slopes(self, z: Array, predicted: Array, which: Sequence[int] | None = None, like: Array | None = None) -> Array:
+    def slopes(
+        self, z: Array, predicted: Array, which: Sequence[int] | None = None, like: Array | None = None, felt: tuple[float, float] = ABOUT
+    ) -> Array:
         """(n, m): derivatives of the prediction by `which` coordinates, all without.
 
         like: (n, coordinates) slopes from somewhere near, which tell how large a difference will be felt.
@@ -109,9 +125,10 @@ class Model:
         chosen = range(len(self.coordinates)) if which is None else which
         first = [c.step for c in self.coordinates]
         if like is not None:
-            felt = np.linalg.norm(self.whitened(like, predicted), axis=0)
-            first = [max(s, min(WIDEST, 1.2 * FELT / max(f, 1e-9))) for s, f in zip(first, felt.tolist(), strict=True)]
-        columns = [self.slope(i, z, predicted, first[i]) for i in chosen]
+            norms = np.linalg.norm(self.whitened(like, predicted), axis=0)
+            needed = [min(WIDEST, 1.2 * felt[0] / max(norm, 1e-9)) for norm in norms.tolist()]
+            first = needed if np.isfinite(felt[1]) else [max(s, n) for s, n in zip(first, needed, strict=True)]
+        columns = [self.slope(i, z, predicted, first[i], felt) for i in chosen]
         return np.stack(columns, axis=1) if columns else np.zeros((len(predicted), 0))
 
     def values(self, z: Array, landing: int) -> dict[str, float]:

@@ -7,7 +7,7 @@ behind than that. So a fit must have converged before it is left behind: all run
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,50 +17,50 @@ from orchestrator.diagnosis.crew import Task
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.problem import Landings
-from orchestrator.diagnosis.tasks import INSENSITIVE, FitAt, GoOn, Point
+from orchestrator.diagnosis.tasks import Draw, FitAt, GoOn, Leap, Point
 
 Array = NDArray[np.float64]
 Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
 QUICK = 3  # steps before the hopeful are told from the hopeless
-HOPEFUL = 60.0  # of φ behind the best after them
+HOPEFUL = 40.0  # of φ behind the best after them
+FEW = 16  # fits: so many or fewer are drawn from more thoroughly
+DRAWS = {False: (16, 1), True: (20, 2)}  # of each fit's posterior, and how many of them are fitted
 PRUNE = 25.0  # of φ behind the best once they stand
-LEAST = (20, 8)  # hypotheses that go on all the same: after the quick steps, to the next horizon
+LEAST = (12, 5)  # hypotheses that go on all the same: after the quick steps, to the next horizon
 ALIKE = 8.0  # of φ: two fits of one hypothesis both go on within this
 APART = 0.05  # of φ: below, they are one
 
 
-class Runner(NamedTuple):
-    """A hypothesis and where it starts: z of the nuisances, then its own."""
-
-    hypothesis: Hypothesis
-    z: Array
+def launched(
+    landings: Landings, nuisances: Sequence[Coordinate], hypotheses: Sequence[Hypothesis], point: Point, run: Run
+) -> list[tuple[Hypothesis, Fit]]:
+    """All hypotheses at the last horizon that the base scenario explains, from its fit there."""
+    tasks = [
+        FitAt(landings, (*nuisances, *h.coordinates), point, np.concatenate([point.z, np.zeros(len(h.coordinates))]), QUICK)
+        for h in hypotheses
+    ]
+    fits = run("hypotheses", tasks)
+    return [(h, fit) for h, fit in zip(hypotheses, fits, strict=True) if fit is not None]
 
 
 def raced(
-    landings: Landings, nuisances: Sequence[Coordinate], fresh: Sequence[int], runners: Sequence[Runner], point: Point, run: Run
+    landings: Landings,
+    nuisances: Sequence[Coordinate],
+    fresh: Sequence[int],
+    before: Sequence[tuple[Hypothesis, Fit]],
+    point: Point,
+    run: Run,
 ) -> list[tuple[Hypothesis, Fit]]:
-    """Who is still in the race after the point's horizon, best first, with its fit, or two."""
-
-    def flown(who: Sequence[Runner]) -> list[tuple[Hypothesis, Fit]]:
-        tasks = [FitAt(landings, (*nuisances, *h.coordinates), point, z, QUICK) for h, z in who]
-        return [(r.hypothesis, fit) for r, fit in zip(who, run(stage, tasks), strict=True) if fit is not None]
-
+    """Who is still in the race after the point's horizon, best first, with its fit, or two; before: fits to a shorter one."""
     stage = "hypotheses" if np.isinf(point.horizon) else f"hypotheses to {point.horizon:g} s"
-    fits = flown(runners)
-    fits += flown([r for h, fit in fits if _deaf(h, fit) for r in _elsewhere(h, fit.z[: len(nuisances)])])
+    few = len(before) <= FEW
+    count, best = DRAWS[few]
+    leaps = [Leap(Draw(landings, fit, point.horizon, count, best, point.slopes), len(h.coordinates), QUICK) for h, fit in before]
+    fits = [(h, fit) for (h, _), ends in zip(before, run(stage, leaps), strict=True) for fit in ends]
     quick = _kept(fits, HOPEFUL, LEAST[0])
     more = [GoOn(landings, fit, point.horizon, (*fresh, *range(len(nuisances), len(fit.z)))) for _, fit in quick]
     stood = zip(quick, run(stage, more), strict=True)
     return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])
-
-
-def _deaf(h: Hypothesis, fit: Fit) -> bool:
-    """Whether the hypothesis cannot be felt where it is: it must be started elsewhere."""
-    return float(np.linalg.norm(fit.jacobian[:, len(fit.z) - len(h.coordinates) :], axis=0).max()) < INSENSITIVE
-
-
-def _elsewhere(h: Hypothesis, nuisances: Array) -> list[Runner]:
-    return [Runner(h, np.concatenate([nuisances, own])) for own in h.scaled_starts()]
 
 
 def _kept(fits: Sequence[tuple[Hypothesis, Fit]], behind: float, least: int) -> list[tuple[Hypothesis, Fit]]:

@@ -10,14 +10,14 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.climb import Path, climbed, distinct
+from orchestrator.diagnosis.climb import ABREAST, Path, climbed, counted, distinct, explains
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Landings, Model, Nobody
-from orchestrator.diagnosis.race import Runner, raced
-from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, Shake
+from orchestrator.diagnosis.race import launched, raced
+from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
@@ -28,7 +28,6 @@ LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
-SHAKEN = 4  # draws of a finalist's posterior that it is fitted from once more
 
 
 class UnflyableError(Exception):
@@ -49,6 +48,8 @@ class Search:
     ) -> None:
         """nuisances: the priors of the data; tolerances: what any model is only known to within a few per cent."""
         self.landings, self.crew, self.seed = landings, crew, seed
+        self.fine = landings.finer()
+        """For fits that are to stand; `landings` are for the way there."""
         self.nuisances = (*nuisances, *tolerances)
         self.fresh = tuple(range(len(nuisances)))
         """Columns made anew beside hypotheses; the base climb makes those of the tolerances anew as well."""
@@ -66,20 +67,19 @@ class Search:
         return self._counted(horizon) < self.landings.size and bool(below) and self._counted(horizon) - max(below) >= FEW
 
     def _counted(self, horizon: float) -> float:
-        """Readings that count when the landings are flown to this horizon."""
-        return sum(float(o.weights(horizon).sum()) for o in self.landings.observations)
+        return counted(self.landings, horizon)
 
     # Base
 
     def base(self, starts: Sequence[Array] = ()) -> Fit:
-        """The nuisances fitted to the base scenario, climbing from `starts`, or from the best of many draws of their priors."""
-        paths = climbed(self.landings, self.nuisances, self.horizons, starts or self._best_draws(), self.run)
+        """The nuisances fitted to the base scenario, climbing from `starts`, alone, or from the best of many draws of their priors."""
+        abreast = 1 if starts else ABREAST
+        paths = climbed(self.landings, self.nuisances, self.horizons, starts or self._best_draws(), self.run, abreast)
         if not paths:
             raise UnflyableError
         self.path = paths[0]
         self.beginnings = tuple(path[0].fit.z for path in distinct([path[:1] for path in paths]))
-        refined = self.refine_all([self.path[-1].fit], "base fit", everything=True)
-        return self.shaken(refined, "base fit")[0]
+        return self.refine_all([self.path[-1].fit], "base fit")[0]
 
     def _best_draws(self) -> list[Array]:
         random = np.random.default_rng(self.seed)
@@ -114,17 +114,17 @@ class Search:
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self._probed(hypotheses, here, "hypotheses")
-        early = self.path[explained].point.z
-        runners = [Runner(h, np.concatenate([early, np.zeros(len(h.coordinates))])) for h in hypotheses]
-        fits: list[tuple[Hypothesis, Fit]] = []
-        for rung in self.path[explained:]:
-            fits = raced(self.landings, self.nuisances, self.fresh, runners, rung.point, self.run)
-            runners = [Runner(h, fit.z) for h, fit in fits]
+        last = self.path[max(explained - 1, 0)]
+        fits = launched(
+            self.landings, self.nuisances, hypotheses, Point(last.fit.z, last.fit.predicted, last.fit.slopes, last.point.horizon), self.run
+        )
+        for rung in self.path[max(explained, 1) :]:
+            fits = raced(self.landings, self.nuisances, self.fresh, fits, rung.point, self.run)
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
-        again = [(h, fit.z[len(base.z) :]) for h, fit in fits[:FINALISTS]]
-        left = [(h, np.zeros(len(h.coordinates))) for h in hypotheses if h.name not in best]
-        tasks = [self._at(h, here, own) for h, own in (*again, *left)]
-        others = self._best_of([h.name for h, _ in (*again, *left)], self.run("hypotheses", tasks))
+        if explains(fits[0][1].chi2, self.landings.size):
+            return best
+        tasks = [self._at(self.landings, h, here, np.zeros(len(h.coordinates))) for h in hypotheses]
+        others = self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks))
         return best | {n: fit for n, fit in others.items() if n not in best or fit.objective < best[n].objective}
 
     def _probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
@@ -132,8 +132,8 @@ class Search:
         tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), here, tuple(h.scaled_starts())) for h in hypotheses]
         return self._best_of([h.name for h in hypotheses], self.run(stage, tasks))
 
-    def _at(self, h: Hypothesis, here: Point, own: Array) -> FitAt:
-        return FitAt(self.landings, (*self.nuisances, *h.coordinates), here, np.concatenate([here.z, own]), 5)
+    def _at(self, landings: Landings, h: Hypothesis, here: Point, own: Array) -> FitAt:
+        return FitAt(landings, (*self.nuisances, *h.coordinates), here, np.concatenate([here.z, own]), 5)
 
     def _best_of(self, names: Sequence[str], fits: Sequence[Fit | None]) -> dict[str, Fit]:
         best: dict[str, Fit] = {}
@@ -147,8 +147,7 @@ class Search:
         ranked = sorted(fits, key=lambda name: -fits[name].log_evidence)
         self.leader = ranked[0]
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
-        refined = self.refine_all([fits[n] for n in top], "finalists")
-        return fits | dict(zip(top, self.shaken(refined, "finalists"), strict=True))
+        return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
@@ -156,9 +155,11 @@ class Search:
         if point is None:
             return fits
         known = {h.name: h for h in (*hypotheses, NULL)}
-        tasks = [self._at(known[n], point, fits[n].z[len(point.z) :]) for n in names]
-        better = _better(dict(zip(names, self.run("back-substitution", tasks), strict=True)), fits)
-        return fits | dict(zip(better, self.refine_all(list(better.values()), "back-substitution"), strict=True))
+        names = [n for n in names if n == NULL.name or fits[n].log_evidence > fits[winner].log_evidence - MARGIN]
+        tasks = [self._at(self.fine, known[n], point, fits[n].z[len(point.z) :]) for n in names]
+        ends = zip(names, self.run("back-substitution", tasks), strict=True)
+        near = {n: fit for n, fit in ends if fit is not None and fit.objective < fits[n].objective + MARGIN}
+        return fits | _better(dict(zip(near, self.refine_all(list(near.values()), "back-substitution"), strict=True)), fits)
 
     def once_more(self, hypotheses: Sequence[Hypothesis], fits: dict[str, Fit], winner: str) -> dict[str, Fit]:
         """All hypotheses probed again from the best one's nuisances, where even that one leaves more than noise.
@@ -175,29 +176,12 @@ class Search:
         """The fit's nuisances without its effect."""
         count = len(self.nuisances)
         z = fit.z[:count]
-        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
+        (predicted,) = self.crew.run([Predict(self.fine, self.nuisances, (z,))])[0]
         return None if predicted is None else Point(z, predicted, fit.slopes[:, :count], np.inf)
 
-    def shaken(self, fits: Sequence[Fit], stage: str) -> list[Fit]:
-        """Each fit, or the best of those that draws of its posterior lead to where one is better, with fresh slopes there."""
-        tasks = [Shake(self.landings, fit, self._renewed(fit), self.seed + k) for fit in fits for k in range(SHAKEN)]
-        ends = self.run(stage, tasks)
-        better: dict[int, Fit] = {}
-        for i, fit in enumerate(fits):
-            below = [e for e in ends[i * SHAKEN : (i + 1) * SHAKEN] if e is not None and e.objective < fit.objective - LEAST]
-            if below:
-                better[i] = min(below, key=lambda e: e.objective)
-        again = dict(zip(better, self.refine_all(list(better.values()), stage), strict=True))
-        return [again.get(i, fit) for i, fit in enumerate(fits)]
-
-    def _renewed(self, fit: Fit) -> tuple[int, ...]:
-        """Columns made anew beside a hypothesis: those of the nuisances proper, and its own."""
-        return (*self.fresh, *range(len(self.nuisances), len(fit.z)))
-
-    def refine_all(self, fits: Sequence[Fit], stage: str, everything: bool = False) -> list[Fit]:
-        """Fresh slopes of the nuisances and of the hypothesis' own; of the tolerances too with `everything`."""
-        tasks = [Refine(self.landings, fit, tuple(range(len(fit.z))) if everything else self._renewed(fit)) for fit in fits]
-        return list(self.run(stage, tasks))
+    def refine_all(self, fits: Sequence[Fit], stage: str) -> list[Fit]:
+        """Each taken on by the finer landings until fresh slopes gain nothing more."""
+        return list(self.run(stage, [Refine(self.fine, fit) for fit in fits]))
 
     def run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
         self.told(stage, self.leader, 0.0)
@@ -212,11 +196,6 @@ def renoised(landings: Landings, fit: Fit) -> Fit:
 def point_of(fit: Fit) -> Point:
     """Where a fit to whole landings ended, for others to start from."""
     return Point(fit.z, fit.predicted, fit.slopes, np.inf)
-
-
-def explains(chi2: float, count: float) -> bool:
-    """Whether a chi-square over so many rows is within three standard deviations of noise."""
-    return chi2 <= count + 3.0 * float(np.sqrt(2.0 * count))
 
 
 def _better(found: Mapping[str, Fit | None], fits: Mapping[str, Fit]) -> dict[str, Fit]:

@@ -102,7 +102,7 @@ def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypothese
     search = Search(setup.landings, setup.nuisances, setup.tolerances, crew, seed, told)
     base = search.base()
     courses = hear_noise(setup, crew, base)
-    base = search.refine_all([renoised(setup.landings, base)], "base fit", everything=True)[0]
+    base = search.refine_all([renoised(setup.landings, base)], "base fit")[0]
     state = State(setup, search, base, hypotheses=list(hypotheses), courses=courses)
     state.fits = search.fit_all(hypotheses, base) | {NULL.name: base}
     state.fits = search.refine_best(state.fits)

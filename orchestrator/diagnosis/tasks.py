@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import Coordinate
-from orchestrator.diagnosis.fit import Fit, fitted, refined
+from orchestrator.diagnosis.coordinates import Coordinate, clipped
+from orchestrator.diagnosis.fit import Fit, fitted, refined, seen_from
 from orchestrator.diagnosis.landing import Course, Lander
 from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.problem import Landings, Model
 
 Array = NDArray[np.float64]
 INSENSITIVE = 1.0  # norm of a column: below, the hypothesis cannot be felt where it is null, and must be started elsewhere
+LOOSE = 1.0  # squared posterior standard deviations: what chance and kinks leave of a draw's prediction
 FARTHEST = 3.0  # of z
 ENERGY = 64.0  # λ, sigma squared, at which a hypothesis is held
 FURTHER = 2.5  # times that, where the first try was not hopeless
@@ -46,6 +48,79 @@ class Predict:
 
 
 @dataclass(frozen=True)
+class Draw:
+    """The best of draws of a fit's posterior, judged by a horizon further than its own; the fit itself is among them.
+
+    Each contact between the two horizons may come in another order; the fit's own minimum leads to one of them, often a wrong one.
+    """
+
+    landings: Landings
+    fit: Fit
+    horizon: float
+    count: int
+    best: int
+    slopes: Array | None = None
+    """Of the first coordinates at that horizon, from somewhere near; made anew without. The draws correct them."""
+    seed: int = 0
+
+    def __call__(self, lander: Lander) -> list[Point]:
+        """Points with the slopes that the draws tell of, best first."""
+        coordinates, z = self.fit.coordinates, self.fit.z
+        model = Model(self.landings, coordinates, lander, self.horizon)
+        positive = np.array([c.positive for c in coordinates], dtype=bool)
+        spread = np.asarray(np.linalg.cholesky(self.fit.covariance), dtype=np.float64)
+        random = np.random.default_rng(self.seed).standard_normal((self.count, len(z)))
+        found: list[tuple[float, Array, Array]] = []
+        for draw in (np.zeros(len(z)), *random):
+            there = z + spread @ draw
+            there = clipped(coordinates, np.where(positive, np.abs(there), there))
+            predicted = model.predict(there)
+            if predicted is not None:
+                residual = model.residual(predicted)
+                found.append((0.5 * float(residual @ residual + there @ there), there, predicted))
+        if not found:
+            return []
+        found.sort(key=lambda one: one[0])
+        slopes = np.zeros((len(found[0][2]), len(z)))
+        if self.slopes is None:
+            slopes[:] = model.slopes(found[0][1], found[0][2], like=self.fit.slopes)
+        else:
+            slopes[:, : self.slopes.shape[1]] = self.slopes
+        best = found[: self.best]
+        return [Point(there, predicted, _told(slopes, found, there, predicted, spread), self.horizon) for _, there, predicted in best]
+
+
+def _told(slopes: Array, found: Sequence[tuple[float, Array, Array]], z: Array, predicted: Array, spread: Array) -> Array:
+    """The slopes changed as little as the draws' predictions allow, in the posterior's own measure."""
+    moves = np.stack([there - z for _, there, _ in found], axis=1)
+    missed = np.stack([there for _, _, there in found], axis=1) - predicted[:, None] - slopes @ moves
+    own = np.linalg.solve(spread, moves)
+    gain = np.linalg.solve(own.T @ own + LOOSE * np.eye(len(found)), own.T)
+    return np.asarray(slopes + missed @ gain @ np.linalg.inv(spread))
+
+
+@dataclass(frozen=True)
+class Leap:
+    """A hypothesis taken from its fit to one horizon to fits to the next, from the best of draws."""
+
+    draw: Draw
+    own: int
+    """Coordinates of the hypothesis, the last ones: their slopes are made anew."""
+    steps: int
+
+    def __call__(self, lander: Lander) -> list[Fit]:
+        fit = self.draw.fit
+        model = Model(self.draw.landings, fit.coordinates, lander, self.draw.horizon)
+        mine = range(len(fit.z) - self.own, len(fit.z))
+        fits = []
+        for point in self.draw(lander):
+            slopes = point.slopes.copy()
+            slopes[:, list(mine)] = model.slopes(point.z, point.predicted, mine, slopes)
+            fits.append(fitted(model, point.z, slopes, point.predicted, steps=self.steps, renew=tuple(mine)))
+        return [fit for fit in fits if fit is not None]
+
+
+@dataclass(frozen=True)
 class Slopes:
     """Some columns of the slopes at one point."""
 
@@ -61,15 +136,13 @@ class Slopes:
 
 
 @dataclass(frozen=True)
-class Climb:
-    """The nuisances alone fitted to one horizon, slopes made anew at its beginning and where they prove poor."""
+class Start:
+    """The nuisances alone fitted to the first horizon from a draw of their prior: with threefold noise, then with their own."""
 
     landings: Landings
     nuisances: tuple[Coordinate, ...]
     z: Array
     horizon: float
-    gently: bool = False
-    """With threefold noise first: from a draw of the prior, not from where a shorter horizon ended."""
 
     def __call__(self, lander: Lander) -> tuple[Point, Fit] | None:
         """Where the fit began, with the slopes there, and how it ended."""
@@ -80,12 +153,25 @@ class Climb:
         slopes = model.slopes(self.z, predicted)
         every = tuple(range(len(self.z)))
         began = Point(self.z, predicted, slopes, self.horizon)
-        fit: Fit | None = None
-        if self.gently:
-            fit = fitted(model, self.z, slopes, predicted, temper=3.0, steps=4, renew=every)
-        z, slopes, predicted = (fit.z, fit.slopes, fit.predicted) if fit else (self.z, slopes, predicted)
-        fit = fitted(model, z, slopes, predicted, steps=8, renew=every, renewals=2)
+        fit = fitted(model, self.z, slopes, predicted, temper=3.0, steps=4, renew=every)
+        fit = fit and fitted(model, fit.z, fit.slopes, fit.predicted, steps=8, renew=every, renewals=2)
         return None if fit is None else (began, fit)
+
+
+@dataclass(frozen=True)
+class Climb:
+    """The nuisances alone fitted to a horizon from a point of it; slopes made anew where the point's prove poor."""
+
+    landings: Landings
+    nuisances: tuple[Coordinate, ...]
+    point: Point
+
+    def __call__(self, lander: Lander) -> tuple[Point, Fit] | None:
+        """Where the fit began, and how it ended."""
+        model = Model(self.landings, self.nuisances, lander, self.point.horizon)
+        every = tuple(range(len(self.point.z)))
+        fit = fitted(model, self.point.z, self.point.slopes, self.point.predicted, steps=8, renew=every)
+        return None if fit is None else (self.point, fit)
 
 
 @dataclass(frozen=True)
@@ -192,34 +278,19 @@ class Probe:
 
 
 @dataclass(frozen=True)
-class Shake:
-    """A fit to whole landings taken on from a point of its own posterior, drawn at random.
-
-    Contacts leave kinks in φ at which slopes promise gains that no step makes: the fit stands, 8 to 10 above the minimum beside it.
-    """
-
-    landings: Landings
-    fit: Fit
-    renew: tuple[int, ...]
-    seed: int
-
-    def __call__(self, lander: Lander) -> Fit | None:
-        model = Model(self.landings, self.fit.coordinates, lander)
-        spread = np.linalg.cholesky(self.fit.covariance)
-        drawn = np.random.default_rng(self.seed).standard_normal(len(self.fit.z))
-        return fitted(model, self.fit.z + spread @ drawn, self.fit.slopes, steps=6, renew=self.renew)
-
-
-@dataclass(frozen=True)
 class Refine:
-    """A fit taken on with the columns `which` made anew."""
+    """A fit seen by these landings, which may be finer than those it was made with, and taken on with slopes of its very point."""
 
     landings: Landings
     fit: Fit
-    which: tuple[int, ...]
+    horizon: float = np.inf
 
     def __call__(self, lander: Lander) -> Fit:
-        return refined(Model(self.landings, self.fit.coordinates, lander), self.fit, self.which)
+        model = Model(self.landings, self.fit.coordinates, lander, self.horizon)
+        predicted = model.predict(self.fit.z)
+        if predicted is None:
+            return self.fit
+        return refined(model, seen_from(model, self.fit.z, predicted, self.fit.slopes))
 
 
 @dataclass(frozen=True)

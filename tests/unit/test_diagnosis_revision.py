@@ -16,6 +16,7 @@ from orchestrator.diagnosis.found_term import FoundTerm, write_effect
 from orchestrator.diagnosis.from_twin import said_by_address
 from orchestrator.diagnosis.landing import RATES, SPIN
 from orchestrator.diagnosis.master_lander import unit_base, unit_slots
+from orchestrator.diagnosis.measured import read_measured
 from orchestrator.diagnosis.moves import Move, Named, applied_moves, effect_moves
 from orchestrator.diagnosis.observation import Observation, Reading
 from orchestrator.diagnosis.outcome import Estimate
@@ -23,6 +24,7 @@ from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.recorded import column, cosimulation_column, twin_column
 from orchestrator.diagnosis.revision import write_landing, write_revision
+from orchestrator.diagnosis.setup import set_up
 from orchestrator.diagnosis.twin_parameters import twin_parameters
 from orchestrator.errors import AddressError
 
@@ -138,6 +140,14 @@ def test_a_search_through_the_master_speaks_of_units(zupp: Addresses) -> None:
 
 def test_what_the_scenario_has_anyway_is_not_said(zupp: Addresses) -> None:
     assert said_by_address(zupp, {"mass": 7063.5, "soil.friction[1]": 0.33}).values == {}
+
+
+def test_what_a_search_is_set_up_with_can_all_be_said_by_address(zupp: Addresses) -> None:
+    measured = read_measured(SCENARIOS / "measured" / "example_soil" / "fit")
+    setup = set_up(zupp.blueprint, [measured], EFFECTS, SCENARIOS / "tolerances.toml", [])
+    said = said_by_address(zupp, setup.landings.bases[0]).values
+    assert {address.partition(".")[0] for address in said} <= {"body", "guidance", "soil"}, "of a landing, start and ground alone differ"
+    assert said_by_address(zupp, setup.landings.bases[0] | {"soil.friction[3]": 0.4}).values.keys() - said.keys() == {"soil.friction"}
 
 
 @pytest.mark.parametrize("scenario", ["apollo11_zupp", "apollo11_zupp_twin"])

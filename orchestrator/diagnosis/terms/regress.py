@@ -14,9 +14,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from orchestrator.diagnosis.climb import explains
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
-from orchestrator.diagnosis.search import Search, explains
+from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Slopes
 from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
 from orchestrator.diagnosis.terms.term import Term

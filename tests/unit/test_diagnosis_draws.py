@@ -1,0 +1,92 @@
+"""From one horizon to the next by draws of the posterior: they find the minimum that the fit's own place leads away from."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from diagnosis_samples import Formula, Line, coordinate, line, one_landing, tracks
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.climb import climbed
+from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.crew import Crew
+from orchestrator.diagnosis.fit import Fit, fitted
+from orchestrator.diagnosis.observation import Track
+from orchestrator.diagnosis.problem import Landings, Model
+from orchestrator.diagnosis.tasks import Draw
+
+Array = NDArray[np.float64]
+EARLY = 0.5  # s
+TIMES = np.arange(0.1, 2.0, 0.1)
+
+
+class Turning(Formula):
+    """At first a itself; later a point turned by 9 a, its radius 1 + 0.3 a: from 0.38 the way down leads to a whole turn, 0.70."""
+
+    def column(self, name: str, values: Mapping[str, float], t: Array) -> Array:
+        a = values["a"]
+        late = (1.0 + 0.3 * a) * (np.cos(9.0 * a) if name == "x" else np.sin(9.0 * a))
+        return np.where(t < EARLY, a, late)
+
+
+def turning() -> Turning:
+    return Turning()
+
+
+def turning_landing() -> Landings:
+    """True is a = 0; the early readings say 0.38, with little certainty."""
+    lander = Turning()
+    noisy = tracks(lander, {"a": 0.0}, ("x", "y"), TIMES, 0.05, 3)
+    early, late = TIMES < EARLY, TIMES > EARLY
+    tracked = [
+        Track("early", "x", "x", TIMES[early], np.full(early.sum(), 0.38), 0.6, 0.0),
+        *(Track("late", t.channel, t.column, TIMES[late], t.readings[late], 0.05, 0.0) for t in noisy),
+    ]
+    return one_landing(tracked, (), {"a": 0.0})
+
+
+def fit_at(landings: Landings, coordinates: tuple[Coordinate, ...], lander: Formula, z: Array, horizon: float = np.inf) -> Fit:
+    model = Model(landings, coordinates, lander, horizon)
+    predicted = model.predict(z)
+    assert predicted is not None
+    fit = fitted(model, z, model.slopes(z, predicted), steps=20, renew=tuple(range(len(z))), renewals=5)
+    assert fit is not None
+    return fit
+
+
+def test_draws_find_the_minimum_beside_which_the_fit_stands() -> None:
+    landings, only = turning_landing(), (coordinate("a"),)
+    early = fit_at(landings, only, Turning(), np.zeros(1), EARLY)
+    assert early.z[0] == pytest.approx(0.35, abs=0.05)
+    caught = fit_at(landings, only, Turning(), early.z)
+    assert caught.z[0] > 0.5, "nobody is caught here: the test shows nothing"
+    (path, *_) = climbed(landings, only, (EARLY, np.inf), [np.zeros(1)], lambda _, tasks: Crew(turning).run(tasks))
+    assert path[-1].fit.z[0] == pytest.approx(0.0, abs=0.01)
+    assert path[-1].fit.objective < caught.objective - 10.0
+
+
+def test_draws_tell_the_slopes() -> None:
+    """Of a linear landing 60 draws leave 1/61 of what was wrong about the slopes, in the mean over all directions."""
+    coordinates = (coordinate("a"), coordinate("b"))
+    landings = one_landing(tracks(Line(), {"a": 0.3, "b": -0.2}, ("y",), TIMES, 0.1, 5), (), {"a": 0.0, "b": 0.0})
+    fit = fit_at(landings, coordinates, line(), np.zeros(2))
+    (best, *_) = Draw(landings, fit, np.inf, 60, 1, np.zeros((len(TIMES), 2)))(line())
+    assert best.slopes == pytest.approx(np.column_stack([np.ones(len(TIMES)), TIMES]), rel=0.05)
+
+
+def test_no_draw_is_better_than_a_fit_that_stands() -> None:
+    coordinates = (coordinate("a"), coordinate("b"))
+    landings = one_landing(tracks(Line(), {"a": 0.3, "b": -0.2}, ("y",), TIMES, 0.1, 5), (), {"a": 0.0, "b": 0.0})
+    fit = fit_at(landings, coordinates, line(), np.zeros(2))
+    (best, *_) = Draw(landings, fit, np.inf, 60, 1)(line())
+    assert best.z == pytest.approx(fit.z)
+
+
+def test_draws_stay_on_their_side_of_a_limit() -> None:
+    coordinates = (coordinate("a", positive=True), coordinate("b"))
+    landings = one_landing(tracks(Line(), {"a": 0.0, "b": 0.1}, ("y",), TIMES, 0.5, 5), (), {"a": 0.0, "b": 0.0})
+    fit = fit_at(landings, coordinates, line(), np.zeros(2))
+    points = Draw(landings, fit, np.inf, 40, 41)(line())
+    assert len(points) == 41
+    assert all(point.z[0] >= 0.0 for point in points)
+    assert len({float(point.z[0]) for point in points}) > 35
