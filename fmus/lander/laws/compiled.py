@@ -24,10 +24,13 @@ try:
     if wants_plain_python():
         raise ImportError
     import numba
+    from numba.typed import List
 except ImportError:
     COMPILED = False
 else:
     COMPILED = True
+Kept: Any = List if COMPILED else list
+"""A list whose elements compiled code keeps as they are: what Python hands over is taken apart at every call."""
 
 
 def forget_stale_code() -> None:

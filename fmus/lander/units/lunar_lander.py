@@ -12,7 +12,7 @@ from ..laws.footpad import COLUMNS, POINTS, Footpad, deepest
 from ..laws.rigid_body import Body, BodyState, inertia_matrix
 from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Engine, Flight, Vehicle
 from ..laws.twin_effects import Effects, Tail, guided
-from ..laws.twin_exchange import LEG_REPORT, fly_and_show, show
+from ..laws.twin_exchange import LEG_REPORT, fly_and_show, kept, show
 from ..laws.twin_stepping import Ride, Settings, pad_motion, push_at_start, start_accelerations, start_flight
 from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation
 from ..shell import Unit, UnitError, input_, output, parameter, state
@@ -172,6 +172,7 @@ class LunarLander(Unit):
             self.span("energy.kinetic", "effects.work"),
             self.span("leg1.pad.position", f"soil{LEGS}.contact_time").reshape(LEGS, LEG_REPORT),
         )
+        self.run = kept(self.vehicle, self.effects, self.ride, *self.outputs)
 
     def engine(self) -> Engine:
         """Wrench of the engine port, its socket included."""
@@ -194,7 +195,7 @@ class LunarLander(Unit):
 
     def advance(self, time: float, step: float) -> None:
         settings = self.settings._replace(first=self.value("next_step"))
-        done = fly_and_show(self.vehicle, self.effects, self.engine(), settings, self.ride, time, step, *self.outputs)
+        done = fly_and_show(self.run, self.engine(), settings, time, step)
         if not done.ok:
             self.refuse_gaps(self.vehicle.pad.radius)
             raise UnitError(f"no convergence, or too many steps, at steps of {done.next_step:.3g} s; a larger tolerance may do")
