@@ -35,7 +35,7 @@ def first_contact(observation: Observation, course: Course) -> float:
     costs = np.array([_misfit(observation, course, float(s)) for s in shifts])
     best = int(np.argmin(costs))
     at_zero = float(costs[np.argmin(np.abs(shifts))])
-    if abs(float(shifts[best])) < NEAR or costs[best] > CLEAR * at_zero:
+    if first < end and (abs(float(shifts[best])) < NEAR or costs[best] > CLEAR * at_zero):
         return 0.0
     return float(shifts[best])
 

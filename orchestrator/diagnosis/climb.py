@@ -8,6 +8,7 @@ order. Every horizon has minima of its own where the order is wrong: of twelve f
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Task
 from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.tasks import Climb, Draw, Point, Start
 
@@ -60,6 +62,20 @@ def climbed(
         ends = run("base fit", [Climb(landings, chosen, point) for _, point in pairs])
         paths = distinct([(*path, Rung(*made)) for (path, _), made in zip(pairs, ends, strict=True) if made is not None])[:abreast]
     return paths
+
+
+@dataclass(frozen=True)
+class Alone:
+    """One hypothesis' nuisances and own coordinates climbed together, as a task."""
+
+    landings: Landings
+    coordinates: tuple[Coordinate, ...]
+    horizons: tuple[float, ...]
+    starts: tuple[Array, ...]
+
+    def __call__(self, lander: Lander) -> Fit | None:
+        paths = climbed(self.landings, self.coordinates, self.horizons, self.starts, lambda _, tasks: [task(lander) for task in tasks], 1)
+        return paths[0][-1].fit if paths else None
 
 
 def counted(landings: Landings, horizon: float) -> float:

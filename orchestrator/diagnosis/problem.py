@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate, applied
-from orchestrator.diagnosis.landing import Lander
+from orchestrator.diagnosis.landing import Course, Lander
 from orchestrator.diagnosis.observation import Observation, of_units
 
 Array = NDArray[np.float64]
@@ -138,14 +138,17 @@ class Model:
         moved = np.flatnonzero(z != before)
         return any(self.coordinates[i].landing in (SHARED, landing) for i in moved)
 
-    def _landed(self, k: int, z: Array) -> Array | None:
+    def course(self, k: int, z: Array, further: float = 0.0) -> Course | None:
+        """Landing k flown to `further` s past the horizon; None where it cannot be."""
         observation = self.landings.observations[k]
         values = self.values(z, k)
-        grid = observation.grid(self.landings.stop[k], values, self.horizon)
+        grid = observation.grid(self.landings.stop[k], values, self.horizon + further)
         course = self.lander.land({**self.landings.bases[k], **of_units(values)}, grid, observation.columns, observation.final)
-        if course is None or not all(np.isfinite(c).all() for c in course.columns.values()):
-            return None
-        return observation.predicted(course, values)
+        return course if course is not None and all(np.isfinite(c).all() for c in course.columns.values()) else None
+
+    def _landed(self, k: int, z: Array) -> Array | None:
+        course = self.course(k, z)
+        return None if course is None else self.landings.observations[k].predicted(course, self.values(z, k))
 
 
 class Nobody:

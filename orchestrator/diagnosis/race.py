@@ -43,14 +43,7 @@ def launched(
     return [(h, fit) for h, fit in zip(hypotheses, fits, strict=True) if fit is not None]
 
 
-def raced(
-    landings: Landings,
-    nuisances: Sequence[Coordinate],
-    fresh: Sequence[int],
-    before: Sequence[tuple[Hypothesis, Fit]],
-    point: Point,
-    run: Run,
-) -> list[tuple[Hypothesis, Fit]]:
+def raced(landings: Landings, before: Sequence[tuple[Hypothesis, Fit]], point: Point, run: Run) -> list[tuple[Hypothesis, Fit]]:
     """Who is still in the race after the point's horizon, best first, with its fit, or two; before: fits to a shorter one."""
     stage = "hypotheses" if np.isinf(point.horizon) else f"hypotheses to {point.horizon:g} s"
     few = len(before) <= FEW
@@ -58,7 +51,7 @@ def raced(
     leaps = [Leap(Draw(landings, fit, point.horizon, count, best, point.slopes), len(h.coordinates), QUICK) for h, fit in before]
     fits = [(h, fit) for (h, _), ends in zip(before, run(stage, leaps), strict=True) for fit in ends]
     quick = _kept(fits, HOPEFUL, LEAST[0])
-    more = [GoOn(landings, fit, point.horizon, (*fresh, *range(len(nuisances), len(fit.z)))) for _, fit in quick]
+    more = [GoOn(landings, fit, point.horizon, tuple(range(len(fit.z)))) for _, fit in quick]
     stood = zip(quick, run(stage, more), strict=True)
     return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])
 

@@ -10,14 +10,14 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.climb import ABREAST, Path, climbed, counted, distinct, explains
+from orchestrator.diagnosis.climb import ABREAST, FIRST, Alone, Path, climbed, counted, distinct, explains
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Landings, Model, Nobody
 from orchestrator.diagnosis.race import launched, raced
-from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine
+from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, Timed
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
@@ -28,6 +28,7 @@ LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
+ALONE = (5, 12.0, 4.0)  # hypotheses that climb alone: so many at most, so far in φ behind the best, and before the base
 
 
 class UnflyableError(Exception):
@@ -81,23 +82,20 @@ class Search:
         self.beginnings = tuple(path[0].fit.z for path in distinct([path[:1] for path in paths]))
         return self.refine_all([self.path[-1].fit], "base fit")[0]
 
-    def _best_draws(self) -> list[Array]:
+    def _best_draws(self, own: Sequence[Coordinate] = ()) -> list[Array]:
+        """Draws of the nuisances' priors, and of a hypothesis' own, that the first horizon likes best; tolerances at their means."""
         random = np.random.default_rng(self.seed)
-        soft = np.isin(np.arange(len(self.nuisances)), self.fresh)
-        draws = [np.zeros(len(soft)), *(np.where(soft, random.standard_normal(len(soft)), 0.0) for _ in range(DRAWS))]
-        first = self.horizons[0]
-        tasks = [Predict(self.landings, self.nuisances, tuple(draws[i : i + 10]), first) for i in range(0, len(draws), 10)]
-        rows = [row for some in self.run("draws", tasks) for row in some]
-        model = Model(self.landings, self.nuisances, Nobody(), first)
-        worth = np.array(
-            [
-                np.inf if row is None else float(np.square(model.residual(row)).sum()) / 9.0 + float(z @ z)
-                for z, row in zip(draws, rows, strict=True)
-            ]
-        )
-        if not np.isfinite(worth).any():
+        coordinates, count = (*self.nuisances, *own), len(self.nuisances)
+        places = np.arange(len(coordinates))
+        soft = np.isin(places, self.fresh) | (places >= count)
+        positive = np.array([c.positive for c in coordinates], dtype=bool)
+        drawn = [np.where(soft, random.standard_normal(len(soft)), 0.0) for _ in range(DRAWS)]
+        draws = [np.zeros(len(soft)), *(np.where(positive, np.abs(z), z) for z in drawn)]
+        tasks = [Timed(self.landings, coordinates, tuple(draws[i : i + 10]), self.horizons[0]) for i in range(0, len(draws), 10)]
+        timed = [one for some in self.run("draws", tasks) for one in some if one is not None]
+        if not timed:
             raise UnflyableError
-        return [draws[i] for i in np.argsort(worth) if np.isfinite(worth[i])]
+        return [z for _, z in sorted(timed, key=lambda one: one[0])]
 
     def explained(self) -> int:
         """How many horizons, from the first on, the base scenario explains."""
@@ -119,7 +117,7 @@ class Search:
             self.landings, self.nuisances, hypotheses, Point(last.fit.z, last.fit.predicted, last.fit.slopes, last.point.horizon), self.run
         )
         for rung in self.path[max(explained, 1) :]:
-            fits = raced(self.landings, self.nuisances, self.fresh, fits, rung.point, self.run)
+            fits = raced(self.landings, fits, rung.point, self.run)
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
         if explains(fits[0][1].chi2, self.landings.size):
             return best
@@ -148,6 +146,19 @@ class Search:
         self.leader = ranked[0]
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
         return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
+
+    def climbed_alone(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
+        """The best, where several are near each other, each from the first horizon on in its own right, as the base scenario was."""
+        ranked = sorted(fits, key=lambda name: fits[name].objective)
+        most, behind, before = ALONE
+        bound = min(fits[ranked[0]].objective + behind, base.objective - before)
+        near = [n for n in ranked if fits[n].objective <= bound][:most]
+        if len(near) < 2:
+            return fits
+        known = {h.name: h.coordinates for h in hypotheses}
+        starts = {n: tuple(self._best_draws(known[n])[:FIRST]) for n in near}
+        tasks = [Alone(self.landings, (*self.nuisances, *known[n]), self.horizons, starts[n]) for n in near]
+        return fits | _better(dict(zip(near, self.run("finalists", tasks), strict=True)), fits)
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""

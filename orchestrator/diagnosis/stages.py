@@ -104,8 +104,8 @@ def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypothese
     courses = hear_noise(setup, crew, base)
     base = search.refine_all([renoised(setup.landings, base)], "base fit")[0]
     state = State(setup, search, base, hypotheses=list(hypotheses), courses=courses)
-    state.fits = search.fit_all(hypotheses, base) | {NULL.name: base}
-    state.fits = search.refine_best(state.fits)
+    fits = search.fit_all(hypotheses, base)
+    state.fits = search.refine_best(search.climbed_alone(fits, hypotheses, base) | {NULL.name: base})
     _substitute(state)
     _rehear(state, crew)
     best = _ranked(state)[0]

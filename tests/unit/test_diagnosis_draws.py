@@ -1,19 +1,20 @@
 """From one horizon to the next by draws of the posterior: they find the minimum that the fit's own place leads away from."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnosis_samples import Formula, Line, coordinate, line, one_landing, tracks
+from diagnosis_samples import RINGING, Formula, Line, Ringing, coordinate, line, one_landing, tracks
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.climb import climbed
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, fitted
-from orchestrator.diagnosis.observation import Track
+from orchestrator.diagnosis.observation import ORIGIN, Track
 from orchestrator.diagnosis.problem import Landings, Model
-from orchestrator.diagnosis.tasks import Draw
+from orchestrator.diagnosis.tasks import Draw, Timed
 
 Array = NDArray[np.float64]
 EARLY = 0.5  # s
@@ -80,6 +81,18 @@ def test_no_draw_is_better_than_a_fit_that_stands() -> None:
     fit = fit_at(landings, coordinates, line(), np.zeros(2))
     (best, *_) = Draw(landings, fit, np.inf, 60, 1)(line())
     assert best.z == pytest.approx(fit.z)
+
+
+@pytest.mark.parametrize("late", [-0.11, 0.0, 0.07])
+def test_each_draw_is_judged_at_the_time_of_contact_that_suits_it(late: float) -> None:
+    """A clock known to 50 ms: whatever zero was drawn, the one taken is right to the step of the times tried (5 ms)."""
+    tracked = [replace(t, times=t.times + late) for t in tracks(Ringing(), RINGING, ("x", "y"), np.arange(0.02, 1.0, 0.02), 0.01, 5)]
+    landings = one_landing(tracked, (), RINGING)
+    coordinates = (coordinate("v", 0.1), Coordinate("time.origin", ((ORIGIN, 1.0),), 0.05))
+    for drawn in (-1.5, 0.3):
+        (found,) = Timed(landings, coordinates, (np.array([0.0, drawn]),), 0.8)(Ringing())
+        assert found is not None
+        assert 0.05 * found[1][1] == pytest.approx(late, abs=5.5e-3)
 
 
 def test_draws_stay_on_their_side_of_a_limit() -> None:

@@ -131,7 +131,7 @@ def test_a_nonlinear_fit_recovers_what_was_put_in() -> None:
 
 
 def test_slopes_of_the_very_point_are_its_derivatives_where_those_from_far_off_are_secants() -> None:
-    """The phase of cos(6 t): at z = 0.1 (10 σ and more in all) the secant has turned; a difference of 1.5 to 5 σ is within 3 % of the derivative."""
+    """The phase of cos(6 t): at z = 0.1 (10 σ and more in all) the secant has turned; differences of 1.5 to 5 σ are within 3 %."""
     model = Model(ringing_landing({}), [coordinate("stiff", 8.0)], Ringing())
     z = np.zeros(1)
     predicted = model.predict(z)
