@@ -74,7 +74,7 @@ class Alone:
     starts: tuple[Array, ...]
 
     def __call__(self, lander: Lander) -> Fit | None:
-        paths = climbed(self.landings, self.coordinates, self.horizons, self.starts, lambda _, tasks: [task(lander) for task in tasks], 1)
+        paths = climbed(self.landings, self.coordinates, self.horizons, self.starts, lambda _, tasks: [task(lander) for task in tasks])
         return paths[0][-1].fit if paths else None
 
 

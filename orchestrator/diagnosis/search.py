@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.climb import ABREAST, FIRST, Alone, Path, climbed, counted, distinct, explains
+from orchestrator.diagnosis.climb import ABREAST, Alone, Path, climbed, counted, distinct, explains
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
@@ -28,6 +28,7 @@ LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
+STARTS = 4  # of a hypothesis that climbs alone
 ALONE = (5, 12.0, 4.0)  # hypotheses that climb alone: so many at most, so far in φ behind the best, and before the base
 
 
@@ -156,7 +157,7 @@ class Search:
         if len(near) < 2:
             return fits
         known = {h.name: h.coordinates for h in hypotheses}
-        starts = {n: tuple(self._best_draws(known[n])[:FIRST]) for n in near}
+        starts = {n: tuple(self._best_draws(known[n])[:STARTS]) for n in near}
         tasks = [Alone(self.landings, (*self.nuisances, *known[n]), self.horizons, starts[n]) for n in near]
         return fits | _better(dict(zip(near, self.run("finalists", tasks), strict=True)), fits)
 
