@@ -60,7 +60,8 @@ def climbed(
         drawn = run("base fit", [Draw(landings, path[-1].fit, horizon, *DRAWS) for path in paths])
         pairs = [(path, point) for path, points in zip(paths, drawn, strict=True) for point in points]
         ends = run("base fit", [Climb(landings, chosen, point) for _, point in pairs])
-        paths = distinct([(*path, Rung(*made)) for (path, _), made in zip(pairs, ends, strict=True) if made is not None])[:abreast]
+        higher = [(*path, Rung(point, fit)) for (path, point), fit in zip(pairs, ends, strict=True) if fit is not None]
+        paths = distinct(higher)[:abreast]
     return paths
 
 

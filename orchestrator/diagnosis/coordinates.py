@@ -70,6 +70,11 @@ def applied(base: Mapping[str, float], coordinates: Sequence[Coordinate], z: Arr
     return values
 
 
+def folded(coordinates: Sequence[Coordinate], z: Array) -> Array:
+    """z with normal draws of half-normal coordinates on their own side."""
+    return np.where([c.positive for c in coordinates], np.abs(z), z)
+
+
 def clipped(coordinates: Sequence[Coordinate], z: Array) -> Array:
     """z within the coordinates' limits."""
     low, high = np.array([c.bounds for c in coordinates]).reshape(-1, 2).T

@@ -45,7 +45,7 @@ class Fit:
 
     @property
     def objective(self) -> float:
-        return 0.5 * self.chi2 + 0.5 * float(self.z @ self.z)
+        return objective(self.residual, self.z)
 
     @property
     def covariance(self) -> Array:
@@ -133,13 +133,13 @@ def fitted(
     for _ in range(steps):
         jacobian = model.whitened(slopes, predicted)
         step = gauss_newton_step(jacobian, residual, z, model.coordinates, temper)
-        promised = _objective(residual, z, temper) - _objective(residual - jacobian @ step, z + step, temper)
+        promised = objective(residual, z, temper) - objective(residual - jacobian @ step, z + step, temper)
         if promised < ENOUGH:
             break
         made = _made(model, z, predicted, residual, slopes, step, temper, promised)
         gained = 0.0
         if made is not None:
-            gained = _objective(residual, z, temper) - _objective(made[2], made[0], temper)
+            gained = objective(residual, z, temper) - objective(made[2], made[0], temper)
             z, predicted, residual = made
         if gained < POOR * promised:
             if made is None and promised < CHANCE:
@@ -157,14 +157,14 @@ def _made(
     model: Model, z: Array, predicted: Array, before: Array, slopes: Array, step: Array, temper: float, promised: float
 ) -> tuple[Array, Array, Array] | None:
     """The step, or a part of it, that lowers φ: point, prediction, residual. What was flown teaches the slopes; before: the residual."""
-    now = _objective(before, z, temper)
+    now = objective(before, z, temper)
     for _ in range(TRIES if promised > CHANCE else 1):
         there = model.predict(z + step)
         if there is not None:
             residual = model.residual(there)
             if float(np.linalg.norm(residual - before)) > FELT:  # a smaller change is mostly the integrator's
                 broyden(slopes, step, there - predicted)
-            if _objective(residual, z + step, temper) < now:
+            if objective(residual, z + step, temper) < now:
                 return z + step, there, residual
         step = 0.35 * step
     return None
@@ -182,8 +182,9 @@ def refined(model: Model, fit: Fit, steps: int = 4) -> Fit:
     return fit
 
 
-def _objective(residual: Array, z: Array, temper: float) -> float:
+def objective(residual: Array, z: Array, temper: float = 1.0) -> float:
+    """φ of a white residual and a point."""
     return 0.5 * float(residual @ residual) / temper**2 + 0.5 * float(z @ z)
 
 
-__all__ = ["Fit", "fitted", "refined", "seen_from"]
+__all__ = ["Fit", "fitted", "objective", "refined", "seen_from"]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import Hypothesis, joined
 from orchestrator.diagnosis.problem import Model, Nobody
-from orchestrator.diagnosis.search import Search, point_of
-from orchestrator.diagnosis.tasks import FitAt, Slopes
+from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.tasks import FitAt, Slopes, point_of
 
 Array = NDArray[np.float64]
 SECONDS = 6  # second effects fitted beside a first

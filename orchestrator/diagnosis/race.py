@@ -6,21 +6,17 @@ behind than that. So a fit must have converged before it is left behind: all run
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from orchestrator.diagnosis.climb import Run
 from orchestrator.diagnosis.coordinates import Coordinate
-from orchestrator.diagnosis.crew import Task
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.problem import Landings
-from orchestrator.diagnosis.tasks import Draw, FitAt, GoOn, Leap, Point
+from orchestrator.diagnosis.tasks import Climb, Draw, FitAt, Leap, Point, point_of
 
-Array = NDArray[np.float64]
-Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
 QUICK = 3  # steps before the hopeful are told from the hopeless
 HOPEFUL = 40.0  # of φ behind the best after them
 FEW = 16  # fits: so many or fewer are drawn from more thoroughly
@@ -51,7 +47,7 @@ def raced(landings: Landings, before: Sequence[tuple[Hypothesis, Fit]], point: P
     leaps = [Leap(Draw(landings, fit, point.horizon, count, best, point.slopes), len(h.coordinates), QUICK) for h, fit in before]
     fits = [(h, fit) for (h, _), ends in zip(before, run(stage, leaps), strict=True) for fit in ends]
     quick = _kept(fits, HOPEFUL, LEAST[0])
-    more = [GoOn(landings, fit, point.horizon, tuple(range(len(fit.z)))) for _, fit in quick]
+    more = [Climb(landings, fit.coordinates, point_of(fit, point.horizon)) for _, fit in quick]
     stood = zip(quick, run(stage, more), strict=True)
     return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])
 

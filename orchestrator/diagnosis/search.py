@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.climb import ABREAST, Alone, Path, climbed, counted, distinct, explains
-from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.coordinates import Coordinate, folded
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Landings, Model, Nobody
 from orchestrator.diagnosis.race import launched, raced
-from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, Timed
+from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, Timed, point_of
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
@@ -54,7 +54,7 @@ class Search:
         """For fits that are to stand; `landings` are for the way there."""
         self.nuisances = (*nuisances, *tolerances)
         self.fresh = tuple(range(len(nuisances)))
-        """Columns made anew beside hypotheses; the base climb makes those of the tolerances anew as well."""
+        """The data's own nuisances: drawn from their priors, and made anew beside second effects; tolerances are neither."""
         self.horizons = (*(h for h in HORIZONS if self._adds(h)), np.inf)
         self.told = told or (lambda stage, best, share: None)
         self.leader = ""
@@ -89,9 +89,8 @@ class Search:
         coordinates, count = (*self.nuisances, *own), len(self.nuisances)
         places = np.arange(len(coordinates))
         soft = np.isin(places, self.fresh) | (places >= count)
-        positive = np.array([c.positive for c in coordinates], dtype=bool)
-        drawn = [np.where(soft, random.standard_normal(len(soft)), 0.0) for _ in range(DRAWS)]
-        draws = [np.zeros(len(soft)), *(np.where(positive, np.abs(z), z) for z in drawn)]
+        drawn = [folded(coordinates, np.where(soft, random.standard_normal(len(soft)), 0.0)) for _ in range(DRAWS)]
+        draws = [np.zeros(len(soft)), *drawn]
         tasks = [Timed(self.landings, coordinates, tuple(draws[i : i + 10]), self.horizons[0]) for i in range(0, len(draws), 10)]
         timed = [one for some in self.run("draws", tasks) for one in some if one is not None]
         if not timed:
@@ -114,13 +113,11 @@ class Search:
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self._probed(hypotheses, here, "hypotheses")
         last = self.path[max(explained - 1, 0)]
-        fits = launched(
-            self.landings, self.nuisances, hypotheses, Point(last.fit.z, last.fit.predicted, last.fit.slopes, last.point.horizon), self.run
-        )
-        for rung in self.path[max(explained, 1) :]:
+        fits = launched(self.landings, self.nuisances, hypotheses, point_of(last.fit, last.point.horizon), self.run)
+        for rung in self.path[explained:]:
             fits = raced(self.landings, fits, rung.point, self.run)
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
-        if explains(fits[0][1].chi2, self.landings.size):
+        if fits and explains(fits[0][1].chi2, self.landings.size):
             return best
         tasks = [self._at(self.landings, h, here, np.zeros(len(h.coordinates))) for h in hypotheses]
         others = self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks))
@@ -150,6 +147,8 @@ class Search:
 
     def climbed_alone(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """The best, where several are near each other, each from the first horizon on in its own right, as the base scenario was."""
+        if not fits:
+            return fits
         ranked = sorted(fits, key=lambda name: fits[name].objective)
         most, behind, before = ALONE
         bound = min(fits[ranked[0]].objective + behind, base.objective - before)
@@ -203,11 +202,6 @@ class Search:
 def renoised(landings: Landings, fit: Fit) -> Fit:
     """The fit as the landings' present noise sees it."""
     return seen_from(Model(landings, fit.coordinates, Nobody()), fit.z, fit.predicted, fit.slopes)
-
-
-def point_of(fit: Fit) -> Point:
-    """Where a fit to whole landings ended, for others to start from."""
-    return Point(fit.z, fit.predicted, fit.slopes, np.inf)
 
 
 def _better(found: Mapping[str, Fit | None], fits: Mapping[str, Fit]) -> dict[str, Fit]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import SHARED, Coordinate, clipped
-from orchestrator.diagnosis.fit import Fit, fitted, refined, seen_from
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate, clipped, folded
+from orchestrator.diagnosis.fit import Fit, fitted, objective, refined, seen_from
 from orchestrator.diagnosis.landing import Course, Lander
 from orchestrator.diagnosis.observation import ORIGIN, of_units
 from orchestrator.diagnosis.problem import Landings, Model
@@ -33,6 +33,11 @@ class Point:
     predicted: Array
     slopes: Array
     horizon: float
+
+
+def point_of(fit: Fit, horizon: float = np.inf) -> Point:
+    """Where a fit ended, for others to start from."""
+    return Point(fit.z, fit.predicted, fit.slopes, horizon)
 
 
 @dataclass(frozen=True)
@@ -72,16 +77,13 @@ class Timed:
             course = model.course(k, z, LATER)
             if course is None:
                 return None
-            place = self._clock(k)
-            worth = {}
-            for time in TIMES if place is not None else (0.0,):
-                if place is not None:
-                    z[place] = time
-                worth[time] = self._missed(model, k, z, course) / 9.0 + time * time
-            best = min(worth, key=lambda time: worth[time])
+            place, worth = self._clock(k), []
+            for time in TIMES if place is not None else ():
+                z[place] = time
+                worth.append(self._missed(model, k, z, course) / 9.0 + time * time)
             if place is not None:
-                z[place] = best
-            total += worth[best] - best * best
+                z[place] = TIMES[int(np.argmin(worth))]
+            total += self._missed(model, k, z, course) / 9.0
         return total + float(z @ z), z
 
     def _missed(self, model: Model, k: int, z: Array, course: Course) -> float:
@@ -115,17 +117,14 @@ class Draw:
         """Points with the slopes that the draws tell of, best first."""
         coordinates, z = self.fit.coordinates, self.fit.z
         model = Model(self.landings, coordinates, lander, self.horizon)
-        positive = np.array([c.positive for c in coordinates], dtype=bool)
         spread = np.asarray(np.linalg.cholesky(self.fit.covariance), dtype=np.float64)
         random = np.random.default_rng(self.seed).standard_normal((self.count, len(z)))
         found: list[tuple[float, Array, Array]] = []
         for draw in (np.zeros(len(z)), *random):
-            there = z + spread @ draw
-            there = clipped(coordinates, np.where(positive, np.abs(there), there))
+            there = clipped(coordinates, folded(coordinates, z + spread @ draw))
             predicted = model.predict(there)
             if predicted is not None:
-                residual = model.residual(predicted)
-                found.append((0.5 * float(residual @ residual + there @ there), there, predicted))
+                found.append((objective(model.residual(predicted), there), there, predicted))
         if not found:
             return []
         found.sort(key=lambda one: one[0])
@@ -208,18 +207,15 @@ class Start:
 
 @dataclass(frozen=True)
 class Climb:
-    """The nuisances alone fitted to a horizon from a point of it; slopes made anew where the point's prove poor."""
+    """A fit to a horizon from a point of it; slopes made anew, once, where the point's prove poor."""
 
     landings: Landings
-    nuisances: tuple[Coordinate, ...]
+    coordinates: tuple[Coordinate, ...]
     point: Point
 
-    def __call__(self, lander: Lander) -> tuple[Point, Fit] | None:
-        """Where the fit began, and how it ended."""
-        model = Model(self.landings, self.nuisances, lander, self.point.horizon)
-        every = tuple(range(len(self.point.z)))
-        fit = fitted(model, self.point.z, self.point.slopes, self.point.predicted, steps=8, renew=every)
-        return None if fit is None else (self.point, fit)
+    def __call__(self, lander: Lander) -> Fit | None:
+        model = Model(self.landings, self.coordinates, lander, self.point.horizon)
+        return fitted(model, self.point.z, self.point.slopes, self.point.predicted, steps=8, renew=range(len(self.point.z)))
 
 
 @dataclass(frozen=True)
@@ -246,20 +242,6 @@ class FitAt:
             return None
         slopes = np.column_stack([self.point.slopes, model.slopes(self.z, predicted, mine)])
         return fitted(model, self.z, slopes, predicted, steps=self.steps, renew=(*self.fresh, *mine))
-
-
-@dataclass(frozen=True)
-class GoOn:
-    """A fit taken on at its horizon; the columns `renew` are made anew, once, where a step gains too little."""
-
-    landings: Landings
-    fit: Fit
-    horizon: float
-    renew: tuple[int, ...]
-
-    def __call__(self, lander: Lander) -> Fit | None:
-        model = Model(self.landings, self.fit.coordinates, lander, self.horizon)
-        return fitted(model, self.fit.z, self.fit.slopes, self.fit.predicted, steps=8, renew=self.renew)
 
 
 @dataclass(frozen=True)
@@ -331,10 +313,9 @@ class Refine:
 
     landings: Landings
     fit: Fit
-    horizon: float = np.inf
 
     def __call__(self, lander: Lander) -> Fit:
-        model = Model(self.landings, self.fit.coordinates, lander, self.horizon)
+        model = Model(self.landings, self.fit.coordinates, lander)
         predicted = model.predict(self.fit.z)
         if predicted is None:
             return self.fit

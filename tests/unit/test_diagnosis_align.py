@@ -54,6 +54,13 @@ def test_a_clock_that_starts_at_contact_is_left_alone(stretch: float) -> None:
     assert first_contact(observation(0.2, 0.0, stretch), course()) == 0.0
 
 
+@pytest.mark.parametrize("offset", [4.5, 9.0])
+def test_a_record_that_starts_after_the_landing_was_over_does_not_start_at_contact(offset: float) -> None:
+    """However badly the scenario fits, part of the record lies within the landing flown; at zero, which fits no worse, none does."""
+    rough = observation(0.0, offset, 3.0, (1, 2, 0), (-1, -1, 1))
+    assert first_contact(rough, course()) > offset - GRID[-1]
+
+
 def test_a_landing_without_series_has_its_contact_at_zero() -> None:
     assert first_contact(Observation([], []), course()) == 0.0
 

@@ -12,8 +12,10 @@ from orchestrator.diagnosis.climb import climbed
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, fitted
+from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.observation import ORIGIN, Track
 from orchestrator.diagnosis.problem import Landings, Model
+from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.tasks import Draw, Timed
 
 Array = NDArray[np.float64]
@@ -34,8 +36,8 @@ def turning() -> Turning:
     return Turning()
 
 
-def turning_landing() -> Landings:
-    """True is a = 0; the early readings say 0.38, with little certainty."""
+def turning_landing(a: float = 0.0) -> Landings:
+    """True is a = 0; the early readings say 0.38, with little certainty. a: what the scenario says."""
     lander = Turning()
     noisy = tracks(lander, {"a": 0.0}, ("x", "y"), TIMES, 0.05, 3)
     early, late = TIMES < EARLY, TIMES > EARLY
@@ -43,7 +45,7 @@ def turning_landing() -> Landings:
         Track("early", "x", "x", TIMES[early], np.full(early.sum(), 0.38), 0.6, 0.0),
         *(Track("late", t.channel, t.column, TIMES[late], t.readings[late], 0.05, 0.0) for t in noisy),
     ]
-    return one_landing(tracked, (), {"a": 0.0})
+    return one_landing(tracked, (), {"a": a, "idle": 0.0})
 
 
 def fit_at(landings: Landings, coordinates: tuple[Coordinate, ...], lander: Formula, z: Array, horizon: float = np.inf) -> Fit:
@@ -64,6 +66,20 @@ def test_draws_find_the_minimum_beside_which_the_fit_stands() -> None:
     (path, *_) = climbed(landings, only, (EARLY, np.inf), [np.zeros(1)], lambda _, tasks: Crew(turning).run(tasks))
     assert path[-1].fit.z[0] == pytest.approx(0.0, abs=0.01)
     assert path[-1].fit.objective < caught.objective - 10.0
+
+
+def test_effects_near_each_other_are_freed_by_climbing_alone() -> None:
+    """Two effects that are the same but for their priors, both caught where the fit at hand leads."""
+    landings, idle = turning_landing(0.2), coordinate("idle")
+    effects = [Hypothesis(name, (coordinate("a", sigma),)) for name, sigma in (("near", 1.0), ("wide", 1.1))]
+    search = Search(landings, (idle,), (), Crew(turning))
+    search.horizons = (EARLY, np.inf)
+    base = fit_at(landings, (idle,), Turning(), np.zeros(1))
+    fits = {h.name: fit_at(landings, (idle, *h.coordinates), Turning(), np.array([0.0, 0.2])) for h in effects}
+    assert all(fit.z[1] > 0.3 for fit in fits.values()), "nobody is caught here: the test shows nothing"
+    freed = search.climbed_alone(fits, effects, base)
+    assert {name: float(fit.z[1]) for name, fit in freed.items()} == pytest.approx({"near": -0.2, "wide": -0.2 / 1.1}, abs=0.01)
+    assert search.climbed_alone({"near": fits["near"]}, effects, base) == {"near": fits["near"]}, "one that leads alone stays"
 
 
 def test_draws_tell_the_slopes() -> None:
