@@ -8,7 +8,6 @@ order. Every horizon has minima of its own where the order is wrong: of twelve f
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,6 @@ from numpy.typing import NDArray
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Task
 from orchestrator.diagnosis.fit import Fit
-from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.tasks import Climb, Draw, Point, Start
 
@@ -25,9 +23,9 @@ Array = NDArray[np.float64]
 Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
 FIRST = 8  # fits to the first horizon
 ABREAST = 2  # of different minima that go on from each horizon
-DRAWS = (30, 2)  # of the posterior of each that goes on, and how many of them are fitted
+DRAWS = (20, 1)  # of the posterior of each that goes on, and how many of them are fitted
 BEHIND = 25.0  # of φ: who is further behind the best of a horizon does not go on
-SAME = (0.3, 0.5)  # of φ, and of every z: one minimum
+SAME = 2.0  # posterior standard deviations: fits nearer to each other have one minimum
 
 
 class Rung(NamedTuple):
@@ -65,20 +63,6 @@ def climbed(
     return paths
 
 
-@dataclass(frozen=True)
-class Alone:
-    """One hypothesis' nuisances and own coordinates climbed together, as a task."""
-
-    landings: Landings
-    coordinates: tuple[Coordinate, ...]
-    horizons: tuple[float, ...]
-    starts: tuple[Array, ...]
-
-    def __call__(self, lander: Lander) -> Fit | None:
-        paths = climbed(self.landings, self.coordinates, self.horizons, self.starts, lambda _, tasks: [task(lander) for task in tasks])
-        return paths[0][-1].fit if paths else None
-
-
 def counted(landings: Landings, horizon: float) -> float:
     """Readings that count when the landings are flown to this horizon."""
     return sum(float(o.weights(horizon).sum()) for o in landings.observations)
@@ -102,4 +86,7 @@ def distinct(paths: Sequence[Path]) -> list[Path]:
 
 
 def _same(one: Fit, other: Fit) -> bool:
-    return abs(one.objective - other.objective) < SAME[0] and float(np.abs(one.z - other.z).max(initial=0.0)) < SAME[1]
+    """Whether `other`, the better, would take `one` for itself."""
+    move = one.z - other.z
+    across = other.jacobian @ move
+    return float(across @ across + move @ move) < SAME**2

@@ -15,6 +15,7 @@ from orchestrator.diagnosis.crew import Crew, Store
 from orchestrator.diagnosis.effects.effect import Effect
 from orchestrator.diagnosis.effects.library import LIBRARY, load_library
 from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.held_out import ask_holdouts
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.locate import located
 from orchestrator.diagnosis.measured import faults, read_measured
@@ -24,7 +25,7 @@ from orchestrator.diagnosis.report import verdict_sentence as sentence
 from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
-from orchestrator.diagnosis.stages import State, align, ask_holdouts, judged, promising, run_search, try_pairs
+from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, try_pairs
 from orchestrator.diagnosis.terms.find_term import find_term
 from orchestrator.diagnosis.terms.found import Found, to_outcome
 from orchestrator.diagnosis.verdict import Judged, Judgement

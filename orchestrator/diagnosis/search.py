@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.climb import ABREAST, Alone, Path, climbed, counted, distinct, explains
+from orchestrator.diagnosis.climb import ABREAST, Path, climbed, counted, distinct, explains
 from orchestrator.diagnosis.coordinates import Coordinate, folded
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
@@ -22,14 +22,13 @@ from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, T
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]
 """Called with the stage, the best hypothesis so far, and the share of the stage done."""
-HORIZONS = (0.3, 0.55, 0.8, 1.2)  # s since first contact, before the whole
+HORIZONS = (0.3, 0.4, 0.5, 0.65, 0.85, 1.2)  # s since first contact, before the whole
 DRAWS = 100  # of the nuisances from their priors, flown to the first horizon
 LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
-STARTS = 4  # of a hypothesis that climbs alone
-ALONE = (5, 12.0, 4.0)  # hypotheses that climb alone: so many at most, so far in φ behind the best, and before the base
+ANEW = (5, 8.0, 3.0)  # hypotheses raced a second time: so many at most, so far in φ behind the best, and before the base
 
 
 class UnflyableError(Exception):
@@ -83,15 +82,13 @@ class Search:
         self.beginnings = tuple(path[0].fit.z for path in distinct([path[:1] for path in paths]))
         return self.refine_all([self.path[-1].fit], "base fit")[0]
 
-    def _best_draws(self, own: Sequence[Coordinate] = ()) -> list[Array]:
-        """Draws of the nuisances' priors, and of a hypothesis' own, that the first horizon likes best; tolerances at their means."""
+    def _best_draws(self) -> list[Array]:
+        """Draws of the nuisances' priors that the first horizon likes best; tolerances at their means."""
         random = np.random.default_rng(self.seed)
-        coordinates, count = (*self.nuisances, *own), len(self.nuisances)
-        places = np.arange(len(coordinates))
-        soft = np.isin(places, self.fresh) | (places >= count)
-        drawn = [folded(coordinates, np.where(soft, random.standard_normal(len(soft)), 0.0)) for _ in range(DRAWS)]
+        soft = np.isin(np.arange(len(self.nuisances)), self.fresh)
+        drawn = [folded(self.nuisances, np.where(soft, random.standard_normal(len(soft)), 0.0)) for _ in range(DRAWS)]
         draws = [np.zeros(len(soft)), *drawn]
-        tasks = [Timed(self.landings, coordinates, tuple(draws[i : i + 10]), self.horizons[0]) for i in range(0, len(draws), 10)]
+        tasks = [Timed(self.landings, self.nuisances, tuple(draws[i : i + 10]), self.horizons[0]) for i in range(0, len(draws), 10)]
         timed = [one for some in self.run("draws", tasks) for one in some if one is not None]
         if not timed:
             raise UnflyableError
@@ -112,10 +109,7 @@ class Search:
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self._probed(hypotheses, here, "hypotheses")
-        last = self.path[max(explained - 1, 0)]
-        fits = launched(self.landings, self.nuisances, hypotheses, point_of(last.fit, last.point.horizon), self.run)
-        for rung in self.path[explained:]:
-            fits = raced(self.landings, fits, rung.point, self.run)
+        fits = self._raced(hypotheses, explained)
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
         if fits and explains(fits[0][1].chi2, self.landings.size):
             return best
@@ -145,20 +139,22 @@ class Search:
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
         return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
 
-    def climbed_alone(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """The best, where several are near each other, each from the first horizon on in its own right, as the base scenario was."""
-        if not fits:
-            return fits
-        ranked = sorted(fits, key=lambda name: fits[name].objective)
-        most, behind, before = ALONE
-        bound = min(fits[ranked[0]].objective + behind, base.objective - before)
-        near = [n for n in ranked if fits[n].objective <= bound][:most]
-        if len(near) < 2:
-            return fits
-        known = {h.name: h.coordinates for h in hypotheses}
-        starts = {n: tuple(self._best_draws(known[n])[:STARTS]) for n in near}
-        tasks = [Alone(self.landings, (*self.nuisances, *known[n]), self.horizons, starts[n]) for n in near]
-        return fits | _better(dict(zip(near, self.run("finalists", tasks), strict=True)), fits)
+    def raced_anew(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
+        """The best of those better than the base fit once more, from the first horizon on, where little holds them fast."""
+        most, behind, before = ANEW
+        bound = min(min((fit.objective for fit in fits.values()), default=np.inf) + behind, base.objective - before)
+        near = sorted((n for n in fits if fits[n].objective <= bound), key=lambda n: fits[n].objective)[:most]
+        known = {h.name: h for h in hypotheses}
+        found = self._raced([known[n] for n in near], 1) if near else []
+        return fits | _better(self._best_of([h.name for h, _ in found], [fit for _, fit in found]), fits)
+
+    def _raced(self, hypotheses: Sequence[Hypothesis], explained: int) -> list[tuple[Hypothesis, Fit]]:
+        """From the last rung that the base explains, or the first, to the top."""
+        last = self.path[max(explained - 1, 0)]
+        fits = launched(self.landings, self.nuisances, hypotheses, point_of(last.fit, last.point.horizon), self.run)
+        for rung in self.path[explained:]:
+            fits = raced(self.landings, fits, rung.point, self.run)
+        return fits
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""

@@ -21,13 +21,14 @@ from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks import Land
-from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, judge
+from orchestrator.diagnosis.verdict import ADEQUATE, Judged, Judgement, credible, judge
 
 Array = NDArray[np.float64]
 GRID = 0.01  # s, of courses to look at
 RESTING = 0.006  # rad/s
 SETTLED = 0.15  # s after the last faster instant
 PAIRED_WITH = 2  # singles that second effects are tried beside
+MISLED = 8.0  # of φ: a base fit that proves so far from its best has misled the effects that were judged from it
 FAR = 0.15  # s: a clock that far off is known to 50 ms, not 5
 CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
 
@@ -105,11 +106,12 @@ def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypothese
     base = search.refine_all([renoised(setup.landings, base)], "base fit")[0]
     state = State(setup, search, base, hypotheses=list(hypotheses), courses=courses)
     fits = search.fit_all(hypotheses, base)
-    state.fits = search.refine_best(search.climbed_alone(fits, hypotheses, base) | {NULL.name: base})
+    state.fits = search.refine_best(search.raced_anew(fits, hypotheses, base) | {NULL.name: base})
     _substitute(state)
+    misled = base.objective > state.fits[NULL.name].objective + MISLED
     _rehear(state, crew)
     best = _ranked(state)[0]
-    if best != NULL.name and adequacy(state.fits[best], setup.landings).p < ADEQUATE:
+    if misled or (best != NULL.name and adequacy(state.fits[best], setup.landings).p < ADEQUATE):
         state.fits = search.once_more(state.hypotheses, state.fits, best)
         _substitute(state)
         _rehear(state, crew)
@@ -162,39 +164,7 @@ def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list
         p = adequacy(fit, state.setup.landings).p
         gain, held = holdouts.get(name, (None, None))
         found.append(Judged(name, fit.log_evidence - null, p, gain, held))
-    singles = sum(1 for h in state.hypotheses if len(parts_of(h.name)) == 1)
-    return found, judge(found, singles)
-
-
-def posterior_of(fit: Fit, nuisances: int) -> list[Coordinate]:
-    """The fit's own coordinates as a prior for another landing: its estimate with its standard deviation."""
-    found = []
-    for i in range(nuisances, len(fit.z)):
-        c = fit.coordinates[i]
-        value, sigma = fit.estimate(i)
-        found.append(replace(c, mean=value, sigma=max(sigma, 1e-6 * c.sigma), positive=False, step=1.0))
-    return found
-
-
-def ask_holdouts(
-    state: State, held: Setup, crew: Crew, seed: int, names: Sequence[str], told: Told | None = None
-) -> tuple[dict[str, Fit], dict[str, tuple[float, float]]]:
-    """Fits of nothing missing and of `names` to the held-out landings, each effect known only as the fitted landings left it."""
-    fits: dict[str, Fit] = {}
-    starts: list[Array] = []
-    for name in (NULL.name, *names):
-        own = posterior_of(state.fits[name], len(state.search.nuisances)) if name != NULL.name else []
-        search = Search(held.landings, [*held.nuisances, *own], held.tolerances, crew, seed, told)
-        place = len(held.nuisances)
-        fits[name] = search.base([np.concatenate([z[:place], np.zeros(len(own)), z[place:]]) for z in starts])
-        if name == NULL.name:
-            starts = list(search.beginnings)
-            hear_noise(held, crew, fits[name])
-    if names:
-        hear_noise(held, crew, fits[names[0]])
-    fits = {n: renoised(held.landings, fit) for n, fit in fits.items()}
-    null = fits[NULL.name].log_evidence
-    return fits, {n: (fits[n].log_evidence - null, adequacy(fits[n], held.landings).p) for n in names}
+    return found, judge(found, _singles(state))
 
 
 def _ranked(state: State) -> list[str]:
@@ -202,7 +172,11 @@ def _ranked(state: State) -> list[str]:
 
 
 def promising(state: State, most: int = 3) -> list[str]:
-    """Effects that might be named: within reach of the best, and above nothing missing."""
-    null = state.fits[NULL.name].log_evidence
-    ranked = [n for n in _ranked(state) if n != NULL.name and state.fits[n].log_evidence - null > BEATS]
-    return [n for n in ranked if state.fits[n].log_evidence > state.fits[ranked[0]].log_evidence - 5.0][:most]
+    """Effects that might be named, and whose fit leaves no more than noise."""
+    found, _ = judged(state, {})
+    adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
+    return [n for n in credible(found, _singles(state)) if n in adequate][:most]
+
+
+def _singles(state: State) -> int:
+    return sum(1 for h in state.hypotheses if len(parts_of(h.name)) == 1)

@@ -20,6 +20,7 @@ LOOSE = 1.0  # squared posterior standard deviations: what chance and kinks leav
 TIMES = tuple(np.linspace(-3.0, 3.0, 61).tolist())  # of z: zeros of the clock that a course is compared at
 LATER = 0.2  # s past the horizon that it is flown for that
 FARTHEST = 3.0  # of z
+TAILS = 3.0  # degrees of freedom of draws: over a kink the posterior is wider than Laplace's approximation of it
 ENERGY = 64.0  # λ, sigma squared, at which a hypothesis is held
 FURTHER = 2.5  # times that, where the first try was not hopeless
 HOPELESS = 16.0  # of φ: half of what holding an absent effect costs
@@ -118,7 +119,9 @@ class Draw:
         coordinates, z = self.fit.coordinates, self.fit.z
         model = Model(self.landings, coordinates, lander, self.horizon)
         spread = np.asarray(np.linalg.cholesky(self.fit.covariance), dtype=np.float64)
-        random = np.random.default_rng(self.seed).standard_normal((self.count, len(z)))
+        generator = np.random.default_rng(self.seed)
+        tails = np.sqrt(TAILS / generator.chisquare(TAILS, (self.count, 1)))
+        random = tails * generator.standard_normal((self.count, len(z)))
         found: list[tuple[float, Array, Array]] = []
         for draw in (np.zeros(len(z)), *random):
             there = clipped(coordinates, folded(coordinates, z + spread @ draw))

@@ -52,6 +52,18 @@ def probabilities(hypotheses: Sequence[Judged], singles: int) -> dict[str, float
     return {h.name: float(w) for h, w in zip(hypotheses, shifted / shifted.sum(), strict=True)}
 
 
+def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
+    """Effects from the top until they hold SURE of what all have together; none where evidence does not ask for an effect."""
+    found = probabilities(hypotheses, singles)
+    evidence = {h.name: h.log_evidence for h in hypotheses}
+    ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
+    if not ranked or evidence[ranked[0]] - evidence[NULL.name] < BEATS or found[NULL.name] > 1.0 - SURE:
+        return ()
+    total = sum(found[n] for n in ranked)
+    held = np.cumsum([found[n] / total for n in ranked])
+    return tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
+
+
 @dataclass(frozen=True)
 class Judgement:
     """The verdict with the names it is about, most probable first."""
@@ -66,17 +78,15 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     """hypotheses must hold nothing missing; pairs only where singles were inadequate."""
     found = probabilities(hypotheses, singles)
     known = {h.name: h for h in hypotheses}
-    null = known[NULL.name]
-    ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
-    best = known[ranked[0]] if ranked else null
-    if best is null or best.log_evidence - null.log_evidence < BEATS or found[NULL.name] > 1.0 - SURE:
+    null, named = known[NULL.name], credible(hypotheses, singles)
+    if not named:
         if null.adequacy < LOST:
             return Judgement(
                 "none_of_my_effects", (), found, "nothing missing is not adequate, and no effect of the library is better by enough"
             )
         return Judgement("nothing_missing", (), found)
-    credible = _smallest_set(ranked, found)
-    standing = tuple(n for n in credible if known[n].stands)
+    best = known[named[0]]
+    standing = tuple(n for n in named if known[n].stands)
     if not standing:
         if null.adequacy >= LOST and best.adequacy >= ADEQUATE:
             return Judgement("nothing_missing", (), found, f"{best.name} fits better, but not on the held-out landing")
@@ -87,21 +97,9 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
             found,
             f"the best of the library, {best.name}, leaves more than noise{held}",
         )
-    if len(credible) == 1 and standing:
+    if len(named) == 1 and standing:
         return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
     if len(standing) == 1 and found[standing[0]] >= SURE:
         return Judgement("effect", parts_of(standing[0]), found)
-    names = tuple(dict.fromkeys(part for n in credible for part in parts_of(n)))
+    names = tuple(dict.fromkeys(part for n in named for part in parts_of(n)))
     return Judgement("cannot_tell", names, found)
-
-
-def _smallest_set(ranked: Sequence[str], found: Mapping[str, float]) -> list[str]:
-    """Names from the top until they hold SURE of what the effects have together."""
-    total = sum(found[n] for n in ranked)
-    chosen, held = [], 0.0
-    for name in ranked:
-        chosen.append(name)
-        held += found[name] / total
-        if held >= SURE:
-            break
-    return chosen

@@ -8,15 +8,15 @@ import pytest
 from diagnosis_samples import RINGING, Formula, Line, Ringing, coordinate, line, one_landing, tracks
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.climb import climbed
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, fitted
+from orchestrator.diagnosis.held_out import exchanged
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.observation import ORIGIN, Track
 from orchestrator.diagnosis.problem import Landings, Model
 from orchestrator.diagnosis.search import Search
-from orchestrator.diagnosis.tasks import Draw, Timed
+from orchestrator.diagnosis.tasks import Climb, Draw, Timed
 
 Array = NDArray[np.float64]
 EARLY = 0.5  # s
@@ -63,23 +63,24 @@ def test_draws_find_the_minimum_beside_which_the_fit_stands() -> None:
     assert early.z[0] == pytest.approx(0.35, abs=0.05)
     caught = fit_at(landings, only, Turning(), early.z)
     assert caught.z[0] > 0.5, "nobody is caught here: the test shows nothing"
-    (path, *_) = climbed(landings, only, (EARLY, np.inf), [np.zeros(1)], lambda _, tasks: Crew(turning).run(tasks))
-    assert path[-1].fit.z[0] == pytest.approx(0.0, abs=0.01)
-    assert path[-1].fit.objective < caught.objective - 10.0
+    (point,) = Draw(landings, early, np.inf, 60, 1)(Turning())
+    found = Climb(landings, only, point)(Turning())
+    assert found is not None
+    assert found.z[0] == pytest.approx(0.0, abs=0.01)
+    assert found.objective < caught.objective - 10.0
 
 
-def test_effects_near_each_other_are_freed_by_climbing_alone() -> None:
+def test_effects_caught_are_freed_by_racing_anew() -> None:
     """Two effects that are the same but for their priors, both caught where the fit at hand leads."""
     landings, idle = turning_landing(0.2), coordinate("idle")
     effects = [Hypothesis(name, (coordinate("a", sigma),)) for name, sigma in (("near", 1.0), ("wide", 1.1))]
     search = Search(landings, (idle,), (), Crew(turning))
     search.horizons = (EARLY, np.inf)
-    base = fit_at(landings, (idle,), Turning(), np.zeros(1))
+    base = search.base()
     fits = {h.name: fit_at(landings, (idle, *h.coordinates), Turning(), np.array([0.0, 0.2])) for h in effects}
     assert all(fit.z[1] > 0.3 for fit in fits.values()), "nobody is caught here: the test shows nothing"
-    freed = search.climbed_alone(fits, effects, base)
+    freed = search.raced_anew(fits, effects, base)
     assert {name: float(fit.z[1]) for name, fit in freed.items()} == pytest.approx({"near": -0.2, "wide": -0.2 / 1.1}, abs=0.01)
-    assert search.climbed_alone({"near": fits["near"]}, effects, base) == {"near": fits["near"]}, "one that leads alone stays"
 
 
 def test_draws_tell_the_slopes() -> None:
@@ -119,3 +120,15 @@ def test_draws_stay_on_their_side_of_a_limit() -> None:
     assert len(points) == 41
     assert all(point.z[0] >= 0.0 for point in points)
     assert len({float(point.z[0]) for point in points}) > 35
+
+
+@pytest.mark.parametrize("caught", ["null", "effect"])
+def test_on_a_held_out_landing_whoever_is_caught_is_freed_by_the_other(caught: str) -> None:
+    """Turning is the nuisance here; the effect moves nothing."""
+    landings, only, both = turning_landing(), (coordinate("a"),), (coordinate("a"), coordinate("idle"))
+    trap, free = np.array([0.35]), np.zeros(1)
+    null = fit_at(landings, only, Turning(), trap if caught == "null" else free)
+    fit = fit_at(landings, both, Turning(), np.array([*(trap if caught == "effect" else free), 0.0]))
+    assert abs(null.objective - fit.objective) > 10.0, "nobody is caught here: the test shows nothing"
+    search = Search(landings, both, (), Crew(turning))
+    assert [f.z[0] for f in exchanged(search, null, fit, range(1, 2))] == pytest.approx([0.0, 0.0], abs=0.01)

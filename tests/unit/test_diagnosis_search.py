@@ -67,7 +67,7 @@ def test_two_hidden_effects_are_found_as_a_pair() -> None:
 def test_a_library_without_effects_leaves_the_base_fit_alone(missing: Mapping[str, float]) -> None:
     search = Search(ringing_landing({**HIDDEN, **missing}, seed=1), NUISANCES, (), Crew(ringing))
     base = search.base()
-    assert search.climbed_alone(search.fit_all([], base), [], base) == {}
+    assert search.raced_anew(search.fit_all([], base), [], base) == {}
 
 
 def test_the_base_fit_does_not_depend_on_the_number_of_workers() -> None:
