@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
 FIRST = 8  # fits to the first horizon
 ABREAST = 2  # of different minima that go on from each horizon
-DRAWS = 20  # of the posterior of each that goes on; the best of them is fitted
+DRAWS = (20, 1)  # of the posterior of each that goes on, and how many of them are fitted
 BEHIND = 25.0  # of φ: who is further behind the best of a horizon does not go on
 SAME = 2.0  # posterior standard deviations: fits nearer to each other have one minimum
 
@@ -55,8 +55,8 @@ def climbed(
     paths = distinct([(Rung(*made),) for made in begun if made is not None])[:abreast]
     for horizon in horizons[1:]:
         paths = paths if not paths or explains(paths[0][-1].fit.chi2, counted(landings, paths[0][-1].point.horizon)) else paths[:1]
-        points = run("base fit", [Draw(landings, path[-1].fit, horizon, DRAWS) for path in paths])
-        pairs = [(path, point) for path, point in zip(paths, points, strict=True) if point is not None]
+        drawn = run("base fit", [Draw(landings, path[-1].fit, horizon, *DRAWS) for path in paths])
+        pairs = [(path, point) for path, points in zip(paths, drawn, strict=True) for point in points]
         ends = run("base fit", [Climb(landings, chosen, point) for _, point in pairs])
         higher = [(*path, Rung(point, fit)) for (path, point), fit in zip(pairs, ends, strict=True) if fit is not None]
         paths = distinct(higher)[:abreast]

@@ -19,10 +19,12 @@ from orchestrator.diagnosis.tasks import Climb, Draw, FitAt, Leap, Point, point_
 
 QUICK = 3  # steps before the hopeful are told from the hopeless
 HOPEFUL = 40.0  # of φ behind the best after them
-FEW = 16  # hypotheses: so many or fewer are drawn from more thoroughly
-DRAWS = {False: 16, True: 24}  # of each fit's posterior, where more or so few are in the race
+FEW = 16  # fits: so many or fewer are drawn from more thoroughly
+DRAWS = {False: (16, 1), True: (20, 2)}  # of each fit's posterior, and how many of them are fitted
 PRUNE = 25.0  # of φ behind the best once they stand
 LEAST = (12, 5)  # hypotheses that go on all the same: after the quick steps, to the next horizon
+ALIKE = 8.0  # of φ: two fits of one hypothesis both go on within this
+APART = 0.05  # of φ: below, they are one
 
 
 def launched(
@@ -38,17 +40,27 @@ def launched(
 
 
 def raced(landings: Landings, before: Sequence[tuple[Hypothesis, Fit]], point: Point, run: Run) -> list[tuple[Hypothesis, Fit]]:
-    """Who is still in the race after the point's horizon, best first, with its fit; before: fits to a shorter one."""
+    """Who is still in the race after the point's horizon, best first, with its fit, or two; before: fits to a shorter one."""
     stage = "hypotheses" if np.isinf(point.horizon) else f"hypotheses to {point.horizon:g} s"
-    count = DRAWS[len(before) <= FEW]
-    leaps = [Leap(Draw(landings, fit, point.horizon, count, point.slopes), len(h.coordinates), QUICK) for h, fit in before]
-    quick = _kept([h for h, _ in before], run(stage, leaps), HOPEFUL, LEAST[0])
+    few = len(before) <= FEW
+    count, best = DRAWS[few]
+    leaps = [Leap(Draw(landings, fit, point.horizon, count, best, point.slopes), len(h.coordinates), QUICK) for h, fit in before]
+    fits = [(h, fit) for (h, _), ends in zip(before, run(stage, leaps), strict=True) for fit in ends]
+    quick = _kept(fits, HOPEFUL, LEAST[0])
     more = [Climb(landings, fit.coordinates, point_of(fit, point.horizon)) for _, fit in quick]
-    return _kept([h for h, _ in quick], run(stage, more), PRUNE, LEAST[1])
+    stood = zip(quick, run(stage, more), strict=True)
+    return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])
 
 
-def _kept(hypotheses: Sequence[Hypothesis], fits: Sequence[Fit | None], behind: float, least: int) -> list[tuple[Hypothesis, Fit]]:
-    """Best first, `least` at least, without those far behind."""
-    found = [(h, fit) for h, fit in zip(hypotheses, fits, strict=True) if fit is not None]
-    found.sort(key=lambda pair: pair[1].objective)
-    return [pair for i, pair in enumerate(found) if i < least or pair[1].objective <= found[0][1].objective + behind]
+def _kept(fits: Sequence[tuple[Hypothesis, Fit]], behind: float, least: int) -> list[tuple[Hypothesis, Fit]]:
+    """Best first, one or two of each hypothesis, without those far behind."""
+    kept: list[tuple[Hypothesis, Fit]] = []
+    seen: dict[str, list[float]] = {}
+    for h, fit in sorted(fits, key=lambda pair: pair[1].objective):
+        others = seen.setdefault(h.name, [])
+        if kept and fit.objective > kept[0][1].objective + behind and len(seen) > least:
+            break
+        if len(others) < 2 and not (others and (fit.objective > others[0] + ALIKE or fit.objective < others[0] + APART)):
+            others.append(fit.objective)
+            kept.append((h, fit))
+    return kept

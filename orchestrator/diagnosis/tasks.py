@@ -109,12 +109,13 @@ class Draw:
     fit: Fit
     horizon: float
     count: int
+    best: int
     slopes: Array | None = None
     """Of the first coordinates at that horizon, from somewhere near; made anew without. The draws correct them."""
     seed: int = 0
 
-    def __call__(self, lander: Lander) -> Point | None:
-        """With the slopes that the draws tell of."""
+    def __call__(self, lander: Lander) -> list[Point]:
+        """Points with the slopes that the draws tell of, best first."""
         coordinates, z = self.fit.coordinates, self.fit.z
         model = Model(self.landings, coordinates, lander, self.horizon)
         spread = np.asarray(np.linalg.cholesky(self.fit.covariance), dtype=np.float64)
@@ -128,14 +129,15 @@ class Draw:
             if predicted is not None:
                 found.append((objective(model.residual(predicted), there), there, predicted))
         if not found:
-            return None
-        _, best, predicted = min(found, key=lambda one: one[0])
-        slopes = np.zeros((len(predicted), len(z)))
+            return []
+        found.sort(key=lambda one: one[0])
+        slopes = np.zeros((len(found[0][2]), len(z)))
         if self.slopes is None:
-            slopes[:] = model.slopes(best, predicted, like=self.fit.slopes)
+            slopes[:] = model.slopes(found[0][1], found[0][2], like=self.fit.slopes)
         else:
             slopes[:, : self.slopes.shape[1]] = self.slopes
-        return Point(best, predicted, _told(slopes, found, best, predicted, spread), self.horizon)
+        best = found[: self.best]
+        return [Point(there, predicted, _told(slopes, found, there, predicted, spread), self.horizon) for _, there, predicted in best]
 
 
 def _told(slopes: Array, found: Sequence[tuple[float, Array, Array]], z: Array, predicted: Array, spread: Array) -> Array:
@@ -149,22 +151,23 @@ def _told(slopes: Array, found: Sequence[tuple[float, Array, Array]], z: Array, 
 
 @dataclass(frozen=True)
 class Leap:
-    """A hypothesis taken from its fit to one horizon to the next, from the best of draws."""
+    """A hypothesis taken from its fit to one horizon to fits to the next, from the best of draws."""
 
     draw: Draw
     own: int
     """Coordinates of the hypothesis, the last ones: their slopes are made anew."""
     steps: int
 
-    def __call__(self, lander: Lander) -> Fit | None:
-        point = self.draw(lander)
-        if point is None:
-            return None
-        model = Model(self.draw.landings, self.draw.fit.coordinates, lander, self.draw.horizon)
-        mine = range(len(point.z) - self.own, len(point.z))
-        slopes = point.slopes.copy()
-        slopes[:, list(mine)] = model.slopes(point.z, point.predicted, mine, slopes)
-        return fitted(model, point.z, slopes, point.predicted, steps=self.steps, renew=mine)
+    def __call__(self, lander: Lander) -> list[Fit]:
+        fit = self.draw.fit
+        model = Model(self.draw.landings, fit.coordinates, lander, self.draw.horizon)
+        mine = range(len(fit.z) - self.own, len(fit.z))
+        fits = []
+        for point in self.draw(lander):
+            slopes = point.slopes.copy()
+            slopes[:, list(mine)] = model.slopes(point.z, point.predicted, mine, slopes)
+            fits.append(fitted(model, point.z, slopes, point.predicted, steps=self.steps, renew=tuple(mine)))
+        return [fit for fit in fits if fit is not None]
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import pytest
 from diagnosis_samples import RINGING, Formula, Line, Ringing, coordinate, line, one_landing, tracks
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import Coordinate, folded
+from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, fitted
 from orchestrator.diagnosis.held_out import exchanged
@@ -63,8 +63,7 @@ def test_draws_find_the_minimum_beside_which_the_fit_stands() -> None:
     assert early.z[0] == pytest.approx(0.35, abs=0.05)
     caught = fit_at(landings, only, Turning(), early.z)
     assert caught.z[0] > 0.5, "nobody is caught here: the test shows nothing"
-    point = Draw(landings, early, np.inf, 60)(Turning())
-    assert point is not None
+    (point,) = Draw(landings, early, np.inf, 60, 1)(Turning())
     found = Climb(landings, only, point)(Turning())
     assert found is not None
     assert found.z[0] == pytest.approx(0.0, abs=0.01)
@@ -89,8 +88,7 @@ def test_draws_tell_the_slopes() -> None:
     coordinates = (coordinate("a"), coordinate("b"))
     landings = one_landing(tracks(Line(), {"a": 0.3, "b": -0.2}, ("y",), TIMES, 0.1, 5), (), {"a": 0.0, "b": 0.0})
     fit = fit_at(landings, coordinates, line(), np.zeros(2))
-    best = Draw(landings, fit, np.inf, 60, np.zeros((len(TIMES), 2)))(line())
-    assert best is not None
+    (best, *_) = Draw(landings, fit, np.inf, 60, 1, np.zeros((len(TIMES), 2)))(line())
     assert best.slopes == pytest.approx(np.column_stack([np.ones(len(TIMES)), TIMES]), rel=0.05)
 
 
@@ -98,8 +96,7 @@ def test_no_draw_is_better_than_a_fit_that_stands() -> None:
     coordinates = (coordinate("a"), coordinate("b"))
     landings = one_landing(tracks(Line(), {"a": 0.3, "b": -0.2}, ("y",), TIMES, 0.1, 5), (), {"a": 0.0, "b": 0.0})
     fit = fit_at(landings, coordinates, line(), np.zeros(2))
-    best = Draw(landings, fit, np.inf, 60)(line())
-    assert best is not None
+    (best, *_) = Draw(landings, fit, np.inf, 60, 1)(line())
     assert best.z == pytest.approx(fit.z)
 
 
@@ -116,15 +113,13 @@ def test_each_draw_is_judged_at_the_time_of_contact_that_suits_it(late: float) -
 
 
 def test_draws_stay_on_their_side_of_a_limit() -> None:
-    """Folded, not cut: cut, half of them would lie at the limit."""
-    both = (coordinate("a", positive=True), coordinate("b"))
-    assert folded(both, np.array([-0.3, -0.4])) == pytest.approx([0.3, -0.4])
-    landings = one_landing(tracks(Line(), {"a": 0.3, "b": 0.1}, ("y",), TIMES, 0.1, 5), (), {"a": 0.0, "b": 0.0})
-    caught = fit_at(landings, (coordinate("a", 0.01, positive=True), both[1]), line(), np.zeros(2))
-    wide = replace(caught, coordinates=both, z=np.array([0.0, caught.z[1]]), jacobian=0.1 * caught.jacobian)
-    best = Draw(landings, wide, np.inf, 40)(line())
-    assert best is not None
-    assert best.z[0] > 0.05
+    coordinates = (coordinate("a", positive=True), coordinate("b"))
+    landings = one_landing(tracks(Line(), {"a": 0.0, "b": 0.1}, ("y",), TIMES, 0.5, 5), (), {"a": 0.0, "b": 0.0})
+    fit = fit_at(landings, coordinates, line(), np.zeros(2))
+    points = Draw(landings, fit, np.inf, 40, 41)(line())
+    assert len(points) == 41
+    assert all(point.z[0] >= 0.0 for point in points)
+    assert len({float(point.z[0]) for point in points}) > 35
 
 
 @pytest.mark.parametrize("caught", ["null", "effect"])
