@@ -104,12 +104,12 @@ class Search:
     # Hypotheses
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from where it stops explaining them."""
+        """Every hypothesis' own fit: from the base fit where that explains the data, else in a race that begins a rung before it stops explaining them."""
         here = point_of(base)
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self._probed(hypotheses, here, "hypotheses")
-        fits = self._raced(hypotheses, explained)
+        fits = self._raced(hypotheses, max(explained - 1, min(explained, 1)))
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
         if fits and explains(fits[0][1].chi2, self.landings.size):
             return best
@@ -148,11 +148,11 @@ class Search:
         found = self._raced([known[n] for n in near], 1) if near else []
         return fits | _better(self._best_of([h.name for h, _ in found], [fit for _, fit in found]), fits)
 
-    def _raced(self, hypotheses: Sequence[Hypothesis], explained: int) -> list[tuple[Hypothesis, Fit]]:
-        """From the last rung that the base explains, or the first, to the top."""
-        last = self.path[max(explained - 1, 0)]
+    def _raced(self, hypotheses: Sequence[Hypothesis], first: int) -> list[tuple[Hypothesis, Fit]]:
+        """Over the rungs from `first` to the top, from the rung below."""
+        last = self.path[max(first - 1, 0)]
         fits = launched(self.landings, self.nuisances, hypotheses, point_of(last.fit, last.point.horizon), self.run)
-        for rung in self.path[explained:]:
+        for rung in self.path[first:]:
             fits = raced(self.landings, fits, rung.point, self.run)
         return fits
 
