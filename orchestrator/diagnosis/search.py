@@ -104,7 +104,7 @@ class Search:
     # Hypotheses
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis' own fit: from the base fit where that explains the data, else in a race that begins a rung before it stops explaining them."""
+        """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from a rung before it stops to."""
         here = point_of(base)
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
