@@ -134,14 +134,17 @@ def _searched(
     try:
         state = run_search(setup, crew, request.seed, told, setup.hypotheses)
     except UnflyableError:
-        raise UserError(f"{request.scenario}: cannot be flown from the prior means of {', '.join(setup.names)}; check the priors") from None
+        raise _unflyable(request, setup) from None
     if crew.flown < request.budget:
         try_pairs(state)
     holdout_fits: dict[str, Fit] = {}
     gains: dict[str, tuple[float, float]] = {}
     names = promising(state, 3 if crew.flown < request.budget else 1)
     if held is not None and names:
-        holdout_fits, gains = ask_holdouts(state, held, crew, request.seed, names, told)
+        try:
+            holdout_fits, gains = ask_holdouts(state, held, crew, request.seed, names, told)
+        except UnflyableError:
+            raise _unflyable(request, held) from None
     verdicts, judgement = judged(state, gains)
     diagnosis = Diagnosis(outcome, setup, held, state, holdout_fits, effects, judgement)
     if judgement.verdict == "none_of_my_effects" and crew.flown < request.budget:
@@ -151,6 +154,10 @@ def _searched(
     outcome.seconds = perf_counter() - began
     outcome.sentence = sentence(outcome)
     return diagnosis
+
+
+def _unflyable(request: Request, setup: Setup) -> UserError:
+    return UserError(f"{request.scenario}: cannot be flown from the prior means of {', '.join(setup.names)}; check the priors")
 
 
 def _look_outside(request: Request, diagnosis: Diagnosis, crew: Crew, told: Told | None) -> None:

@@ -6,18 +6,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
-from orchestrator.diagnosis.hypothesis import NULL
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.search import Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import State, hear_noise
 
-Array = NDArray[np.float64]
 STAGE = "held-out landing"
 
 
@@ -35,37 +33,30 @@ def ask_holdouts(
     state: State, held: Setup, crew: Crew, seed: int, names: Sequence[str], told: Told | None = None
 ) -> tuple[dict[str, Fit], dict[str, tuple[float, float]]]:
     """Fits of nothing missing and of `names` to the held-out landings, each effect known only as the fitted landings left it."""
+    search = Search(held.landings, held.nuisances, held.tolerances, crew, seed, told)
+    null = search.base()
+    hear_noise(held, crew, null)
+    null = renoised(held.landings, null)
     fits: dict[str, Fit] = {}
-    starts: list[Array] = []
-    place = len(held.nuisances)
-    for name in (NULL.name, *names):
-        own = posterior_of(state.fits[name], len(state.search.nuisances)) if name != NULL.name else []
-        search = Search(held.landings, [*held.nuisances, *own], held.tolerances, crew, seed, told)
-        fits[name] = search.base([np.concatenate([z[:place], np.zeros(len(own)), z[place:]]) for z in starts])
-        if name == NULL.name:
-            starts = list(search.beginnings)
-            hear_noise(held, crew, fits[name])
-            fits[name] = renoised(held.landings, fits[name])
-        else:
-            fits[NULL.name], fits[name] = exchanged(search, fits[NULL.name], fits[name], range(place, place + len(own)))
-    if names:
-        hear_noise(held, crew, fits[names[0]])
-    fits = {n: renoised(held.landings, fit) for n, fit in fits.items()}
-    null = fits[NULL.name].log_evidence
-    return fits, {n: (fits[n].log_evidence - null, adequacy(fits[n], held.landings).p) for n in names}
+    for name in names:
+        fit = search.fit_once(Hypothesis(name, tuple(posterior_of(state.fits[name], len(state.search.nuisances)))), null)
+        if fit is not None:
+            null, fits[name] = exchanged(search, null, fit)
+    if fits:
+        hear_noise(held, crew, next(iter(fits.values())))
+    fits = {n: renoised(held.landings, fit) for n, fit in {NULL.name: null, **fits}.items()}
+    evidence = fits[NULL.name].log_evidence
+    gains = {n: (fit.log_evidence - evidence, adequacy(fit, held.landings).p) for n, fit in fits.items() if n != NULL.name}
+    return fits, dict.fromkeys(names, (-np.inf, 0.0)) | gains
 
 
-def exchanged(search: Search, null: Fit, fit: Fit, own: range) -> tuple[Fit, Fit]:
-    """Both fits, the worse of the two tried again from the other's nuisances: both are to be judged from the better valley.
-
-    own: columns of `fit` that `null` does not have
-    """
-    nuisances = np.delete(np.arange(len(fit.z)), own)
+def exchanged(search: Search, null: Fit, fit: Fit) -> tuple[Fit, Fit]:
+    """Both fits, the worse of the two tried again from the other's nuisances: both are to be judged from the better valley."""
+    count = len(null.z)
     if fit.objective < null.objective:
-        (tried,) = search.refine_all([replace(null, z=fit.z[nuisances], slopes=fit.slopes[:, nuisances])], STAGE)
+        (tried,) = search.refine_all([replace(null, z=fit.z[:count], slopes=fit.slopes[:, :count])], STAGE)
         return min(null, tried, key=_objective), fit
-    z, slopes = fit.z.copy(), fit.slopes.copy()
-    z[nuisances], slopes[:, nuisances] = null.z, null.slopes
+    z, slopes = np.append(null.z, fit.z[count:]), np.column_stack([null.slopes, fit.slopes[:, count:]])
     (tried,) = search.refine_all([replace(fit, z=z, slopes=slopes)], STAGE)
     return null, min(fit, tried, key=_objective)
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from orchestrator.diagnosis.climb import Run
+from orchestrator.diagnosis.climb import Run, Rung, counted, explains
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import Hypothesis
@@ -39,14 +39,17 @@ def launched(
     return [(h, fit) for h, fit in zip(hypotheses, fits, strict=True) if fit is not None]
 
 
-def raced(landings: Landings, before: Sequence[tuple[Hypothesis, Fit]], point: Point, run: Run) -> list[tuple[Hypothesis, Fit]]:
-    """Who is still in the race after the point's horizon, best first, with its fit, or two; before: fits to a shorter one."""
+def raced(landings: Landings, before: Sequence[tuple[Hypothesis, Fit]], rung: Rung, run: Run) -> list[tuple[Hypothesis, Fit]]:
+    """Who is still in the race after the rung's horizon, best first, with its fit, or two; before: fits to a shorter one."""
+    point = rung.point
     stage = "hypotheses" if np.isinf(point.horizon) else f"hypotheses to {point.horizon:g} s"
     few = len(before) <= FEW
     count, best = DRAWS[few]
     leaps = [Leap(Draw(landings, fit, point.horizon, count, best, point.slopes), len(h.coordinates), QUICK) for h, fit in before]
     fits = [(h, fit) for (h, _), ends in zip(before, run(stage, leaps), strict=True) for fit in ends]
     quick = _kept(fits, HOPEFUL, LEAST[0])
+    if not few and explains(rung.fit.chi2, counted(landings, point.horizon)):
+        return quick  # nobody is to be left behind here
     more = [Climb(landings, fit.coordinates, point_of(fit, point.horizon)) for _, fit in quick]
     stood = zip(quick, run(stage, more), strict=True)
     return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])

@@ -139,11 +139,20 @@ class Search:
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
         return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
 
+    def fit_once(self, hypothesis: Hypothesis, base: Fit) -> Fit | None:
+        """One hypothesis raced from the first horizon on, and refined; None where it cannot be flown."""
+        found = [fit for _, fit in self._raced([hypothesis], 1)] if len(self.path) > 1 else []
+        at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
+        found = found or [fit for fit in self.run("held-out landing", [at_base]) if fit is not None]
+        return self.refine_all(found[:1], "held-out landing")[0] if found else None
+
     def raced_anew(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """The best of those better than the base fit once more, from the first horizon on, where little holds them fast."""
         most, behind, before = ANEW
         bound = min(min((fit.objective for fit in fits.values()), default=np.inf) + behind, base.objective - before)
         near = sorted((n for n in fits if fits[n].objective <= bound), key=lambda n: fits[n].objective)[:most]
+        if len(near) == 1 and fits[near[0]].objective < base.objective - MARGIN:
+            return fits
         known = {h.name: h for h in hypotheses}
         found = self._raced([known[n] for n in near], 1) if near else []
         return fits | _better(self._best_of([h.name for h, _ in found], [fit for _, fit in found]), fits)
@@ -153,7 +162,7 @@ class Search:
         last = self.path[max(first - 1, 0)]
         fits = launched(self.landings, self.nuisances, hypotheses, point_of(last.fit, last.point.horizon), self.run)
         for rung in self.path[first:]:
-            fits = raced(self.landings, fits, rung.point, self.run)
+            fits = raced(self.landings, fits, rung, self.run)
         return fits
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
