@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2 as chi_square
+from scipy.stats import f as variance_ratio
 
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.problem import Landings
@@ -17,7 +18,7 @@ LAGS = 5
 
 @dataclass(frozen=True)
 class Adequacy:
-    """p-values: of the chi-square, of the whiteness of the worst channel (corrected for their number), and of both together."""
+    """p-values: of the size of the residual, of the whiteness of the worst channel (corrected for their number), and of both together."""
 
     chi2: float
     freedom: float
@@ -40,8 +41,25 @@ def adequacy(fit: Fit, landings: Landings) -> Adequacy:
         ]
     )
     freedom = max(float(counted.sum()) - followed, 1.0)
-    size = float(chi_square.sf(fit.chi2, freedom))
-    return Adequacy(fit.chi2, freedom, size, _whiteness(fit, landings))
+    against = _noise_freedom(landings)
+    size = chi_square.sf(fit.chi2, freedom) if np.isinf(against) else variance_ratio.sf(fit.chi2 / freedom, freedom, against)
+    return Adequacy(fit.chi2, freedom, float(size), _whiteness(fit, landings))
+
+
+def _noise_freedom(landings: Landings) -> float:
+    """Degrees of freedom of the estimated noise that all rows are measured by; infinite where it is as good as known.
+
+    Of n rows with noise estimated from k the relative variance of chi-square is 2/n where the noise is known. It is 2/k - 2/n where it was
+    estimated from k of these rows: then it is F's with n and 1/(1/k - 2/n) degrees of freedom. Series add by the squares of their shares.
+    """
+    inverse = 0.0
+    for observation in landings.observations:
+        for series in dict.fromkeys(t.series for t in observation.tracks):
+            pairs = [(t, noise) for t, noise in zip(observation.tracks, observation.noises, strict=True) if t.series == series]
+            rows, known = float(sum(len(t.times) for t, _ in pairs)), pairs[0][1].known
+            if rows > 0.0:
+                inverse += (rows / landings.size) ** 2 * max(1.0 / known - 2.0 / rows, 0.0)
+    return 1.0 / inverse if inverse > 0.0 else np.inf
 
 
 def _whiteness(fit: Fit, landings: Landings) -> float:

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 STILL = 40  # samples of a series needed to judge its noise by
 LOST = 3  # numbers of a parabola
+TRUST = 0.1  # of ln σ: what stated noise is taken to be known to, before the rest is heard
+CONTRADICTED = 3.0  # standard deviations: beyond, the stated noise counts for nothing
 LEAST = 0.5  # of the stated σ: data may be quieter than said, the model is not
 
 
@@ -25,6 +27,8 @@ class Noise:
     sigma: float
     rho: float
     interval: float
+    known: float = np.inf
+    """Innovations that σ is known as well as from; σ is known to 1/√(2 known)."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,7 @@ def noise_of(tracks: Sequence[Stretch], colour: float | None) -> list[Noise]:
 
     The stated σ are taken in proportion; ρ and their common factor are estimated. The factor makes the INNOVATIONS as large as they are:
     they are what a whitened residual is measured by, and hardly depend on an error of ρ; σ and ρ by themselves would matter threefold.
+    A short rest tells the factor to 10 % only: it is weighed with the stated σ, normal in ln σ, unless it contradicts them.
     """
     intervals = [typical_interval(t.times) for t in tracks]
     quiet = [_detrended(t.residual[t.still] / t.sigma) for t in tracks]
@@ -76,10 +81,11 @@ def noise_of(tracks: Sequence[Stretch], colour: float | None) -> list[Noise]:
     rho = _rho(quiet) if colour is None else colour
     rho = 0.0 if colour is None and rho < 2.0 / np.sqrt(known) else rho
     factor = np.sqrt(_innovation(quiet, rho) / (1.0 - rho**2))
-    if rho == 0.0 and abs(np.log(factor)) < 3.0 / np.sqrt(2.0 * known):
-        factor = 1.0
+    heard, stated = 2.0 * known, 1.0 / TRUST**2
+    if abs(np.log(factor)) < CONTRADICTED * np.sqrt(1.0 / heard + 1.0 / stated):
+        factor, heard = factor ** (heard / (heard + stated)), heard + stated
     factor = max(float(factor), LEAST)
-    return [Noise(factor * t.sigma, rho, interval) for t, interval in zip(tracks, intervals, strict=True)]
+    return [Noise(factor * t.sigma, rho, interval, 0.5 * heard) for t, interval in zip(tracks, intervals, strict=True)]
 
 
 def _detrended(u: Array) -> Array:

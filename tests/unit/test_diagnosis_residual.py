@@ -49,6 +49,22 @@ def test_what_a_fit_followed_is_taken_off_the_freedom() -> None:
     assert kstest([it.size for it in found], "uniform").pvalue > 1e-3
 
 
+@pytest.mark.parametrize("share", [0.15, 0.3, 0.7])
+def test_a_noise_estimated_from_a_part_of_the_rows_makes_no_fit_inadequate(share: float) -> None:
+    """The chi-square's own p-value would be below 0.01 in 15 % of the fits where 15 % of the rows told the noise."""
+    landings = ringing_landing({})
+    fit, random = base_fit(landings), np.random.default_rng(0)
+    (observation,) = landings.observations
+    known = int(share * 198)
+    observation.set_noise([replace(noise, known=float(known)) for noise in observation.noises])
+    found = []
+    for _ in range(600):
+        e = random.standard_normal(198)
+        found.append(adequacy(replace(fit, residual=e / np.sqrt(np.mean(e[-known:] ** 2))), landings).size)
+    assert (0.02 if share < 0.5 else 0.0) < np.mean(np.array(found) < 0.05) < 0.08
+    assert np.mean(np.array(found) < 0.01) < 0.025
+
+
 @pytest.mark.parametrize("what", ["larger", "coloured"])
 def test_a_residual_that_is_too_large_or_coloured_is_not_adequate(what: str) -> None:
     landings = ringing_landing({})
