@@ -44,22 +44,21 @@ def climbed(
     horizons: Sequence[float],
     starts: Sequence[Array],
     run: Run,
-    abreast: int = ABREAST,
 ) -> list[Path]:
-    """Climbs of all horizons, the best first, `abreast` at most; empty where none of the starts can be flown.
+    """Climbs of all horizons, the best first, ABREAST at most; empty where none of the starts can be flown.
 
     From where the best leaves more than noise it goes on alone: no minimum of these coordinates will do.
     """
     chosen = tuple(nuisances)
     begun = run("base fit", [Start(landings, chosen, z, horizons[0]) for z in starts[:FIRST]])
-    paths = distinct([(Rung(*made),) for made in begun if made is not None])[:abreast]
+    paths = distinct([(Rung(*made),) for made in begun if made is not None])[:ABREAST]
     for horizon in horizons[1:]:
         paths = paths if not paths or explains(paths[0][-1].fit.chi2, counted(landings, paths[0][-1].point.horizon)) else paths[:1]
         drawn = run("base fit", [Draw(landings, path[-1].fit, horizon, *DRAWS) for path in paths])
         pairs = [(path, point) for path, points in zip(paths, drawn, strict=True) for point in points]
         ends = run("base fit", [Climb(landings, chosen, point) for _, point in pairs])
         higher = [(*path, Rung(point, fit)) for (path, point), fit in zip(pairs, ends, strict=True) if fit is not None]
-        paths = distinct(higher)[:abreast]
+        paths = distinct(higher)[:ABREAST]
     return paths
 
 

@@ -30,7 +30,7 @@ APART = 0.05  # of φ: below, they are one
 def launched(
     landings: Landings, nuisances: Sequence[Coordinate], hypotheses: Sequence[Hypothesis], point: Point, run: Run
 ) -> list[tuple[Hypothesis, Fit]]:
-    """All hypotheses at the last horizon that the base scenario explains, from its fit there."""
+    """All hypotheses at the horizon of a fit of the base scenario, from there."""
     tasks = [
         FitAt(landings, (*nuisances, *h.coordinates), point, np.concatenate([point.z, np.zeros(len(h.coordinates))]), QUICK)
         for h in hypotheses

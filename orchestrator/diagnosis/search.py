@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.climb import ABREAST, Path, climbed, counted, distinct, explains
+from orchestrator.diagnosis.climb import Path, climbed, counted, explains
 from orchestrator.diagnosis.coordinates import Coordinate, folded
 from orchestrator.diagnosis.crew import Crew, Task
 from orchestrator.diagnosis.fit import Fit, seen_from
@@ -60,8 +60,6 @@ class Search:
         """The best hypothesis so far, for whoever waits."""
         self.path: Path = ()
         """The best climb of the base scenario."""
-        self.beginnings: tuple[Array, ...] = ()
-        """Ends of the climbs at the first horizon, best first."""
 
     def _adds(self, horizon: float) -> bool:
         below = [c for c in (self._counted(h) for h in (0.0, *HORIZONS)) if c < self._counted(horizon)]
@@ -72,14 +70,12 @@ class Search:
 
     # Base
 
-    def base(self, starts: Sequence[Array] = ()) -> Fit:
-        """The nuisances fitted to the base scenario, climbing from `starts`, alone, or from the best of many draws of their priors."""
-        abreast = 1 if starts else ABREAST
-        paths = climbed(self.landings, self.nuisances, self.horizons, starts or self._best_draws(), self.run, abreast)
+    def base(self) -> Fit:
+        """The nuisances fitted to the base scenario, climbing from the best of many draws of their priors."""
+        paths = climbed(self.landings, self.nuisances, self.horizons, self._best_draws(), self.run)
         if not paths:
             raise UnflyableError
         self.path = paths[0]
-        self.beginnings = tuple(path[0].fit.z for path in distinct([path[:1] for path in paths]))
         return self.refine_all([self.path[-1].fit], "base fit")[0]
 
     def _best_draws(self) -> list[Array]:
