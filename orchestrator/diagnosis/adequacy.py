@@ -54,9 +54,8 @@ def _noise_freedom(landings: Landings) -> float:
     """
     inverse = 0.0
     for observation in landings.observations:
-        for series in dict.fromkeys(t.series for t in observation.tracks):
-            pairs = [(t, noise) for t, noise in zip(observation.tracks, observation.noises, strict=True) if t.series == series]
-            rows, known = float(sum(len(t.times) for t, _ in pairs)), pairs[0][1].known
+        for places in observation.series.values():
+            rows, known = float(sum(len(observation.tracks[i].times) for i in places)), observation.noises[places[0]].known
             if rows > 0.0:
                 inverse += (rows / landings.size) ** 2 * max(1.0 / known - 2.0 / rows, 0.0)
     return 1.0 / inverse if inverse > 0.0 else np.inf

@@ -55,8 +55,8 @@ def _misfit(observation: Observation, course: Course, shift: float) -> float:
 
 def swapped(observation: Observation, course: Course) -> str:
     """What is wrong with the axes of a series, if another order or other signs fit very much better; else nothing."""
-    for series in dict.fromkeys(t.series for t in observation.tracks):
-        tracks = [t for t in observation.tracks if t.series == series and len(t.times)]
+    for series, places in observation.series.items():
+        tracks = [observation.tracks[i] for i in places if len(observation.tracks[i].times)]
         if len(tracks) != 3 or any(len(t.times) != len(tracks[0].times) for t in tracks):
             continue
         model = np.column_stack([sampled(course, t.column, t.times - observation.shift) for t in tracks])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -39,7 +40,8 @@ def ask_holdouts(
     null = renoised(held.landings, null)
     fits: dict[str, Fit] = {}
     for name in names:
-        fit = search.fit_once(Hypothesis(name, tuple(posterior_of(state.fits[name], len(state.search.nuisances)))), null)
+        own = posterior_of(state.fits[name], len(state.search.nuisances))
+        fit = search.fit_once(Hypothesis(name, tuple(own)), null, STAGE)
         if fit is not None:
             null, fits[name] = exchanged(search, null, fit)
     if fits:
@@ -55,11 +57,7 @@ def exchanged(search: Search, null: Fit, fit: Fit) -> tuple[Fit, Fit]:
     count = len(null.z)
     if fit.objective < null.objective:
         (tried,) = search.refine_all([replace(null, z=fit.z[:count], slopes=fit.slopes[:, :count])], STAGE)
-        return min(null, tried, key=_objective), fit
+        return min(null, tried, key=attrgetter("objective")), fit
     z, slopes = np.append(null.z, fit.z[count:]), np.column_stack([null.slopes, fit.slopes[:, count:]])
     (tried,) = search.refine_all([replace(fit, z=z, slopes=slopes)], STAGE)
-    return null, min(fit, tried, key=_objective)
-
-
-def _objective(fit: Fit) -> float:
-    return fit.objective
+    return null, min(fit, tried, key=attrgetter("objective"))

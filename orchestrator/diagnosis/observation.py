@@ -87,6 +87,14 @@ class Observation:
         return self.places[-1].stop if self.places else 0
 
     @property
+    def series(self) -> dict[str, list[int]]:
+        """The places of each series' tracks among the tracks."""
+        found: dict[str, list[int]] = {}
+        for place, track in enumerate(self.tracks):
+            found.setdefault(track.series, []).append(place)
+        return found
+
+    @property
     def labels(self) -> list[str]:
         """A name for every row."""
         return [t.channel for t in self.tracks for _ in t.times] + [r.name for r in self.readings]

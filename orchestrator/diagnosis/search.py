@@ -105,7 +105,7 @@ class Search:
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self._probed(hypotheses, here, "hypotheses")
-        fits = self._raced(hypotheses, max(explained - 1, min(explained, 1)))
+        fits = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
         if fits and explains(fits[0][1].chi2, self.landings.size):
             return best
@@ -135,12 +135,13 @@ class Search:
         top = [n for n in ranked[:FINALISTS] if fits[n].log_evidence > fits[ranked[0]].log_evidence - MARGIN and n != NULL.name]
         return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
 
-    def fit_once(self, hypothesis: Hypothesis, base: Fit) -> Fit | None:
-        """One hypothesis raced from the first horizon on, and refined; None where it cannot be flown."""
+    def fit_once(self, hypothesis: Hypothesis, base: Fit, stage: str) -> Fit | None:
+        """One hypothesis raced from the first horizon on, or else fitted from the base fit, and refined; None where it cannot be flown."""
         found = [fit for _, fit in self._raced([hypothesis], 1)] if len(self.path) > 1 else []
-        at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
-        found = found or [fit for fit in self.run("held-out landing", [at_base]) if fit is not None]
-        return self.refine_all(found[:1], "held-out landing")[0] if found else None
+        if not found:
+            at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
+            found = [fit for fit in self.run(stage, [at_base]) if fit is not None]
+        return self.refine_all(found[:1], stage)[0] if found else None
 
     def raced_anew(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """The best of those better than the base fit once more, from the first horizon on, where little holds them fast."""

@@ -87,8 +87,7 @@ def hear_noise(setup: Setup, crew: Crew, fit: Fit) -> list[Course]:
 def _heard(observation: Observation, predicted: Array, rest: float) -> list[Noise]:
     """Noise of every track, series by series, from samples later than `rest`, s since first contact."""
     found: dict[int, Noise] = {}
-    for series in dict.fromkeys(t.series for t in observation.tracks):
-        places = [i for i, t in enumerate(observation.tracks) if t.series == series]
+    for places in observation.series.values():
         tracks = [observation.tracks[i] for i in places]
         stretches = [
             Stretch(t.times, observation.raw(predicted, i), t.times - observation.shift > rest, t.sigma)
