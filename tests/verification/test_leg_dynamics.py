@@ -281,7 +281,7 @@ def test_tangents_of_the_struts(trial: int) -> None:
     still = np.zeros(3)
     at = shape(c.leg, triple(c.p), ZERO)
     loads = strut_loads(c.leg, at, c.crush)
-    stiffness, damping = (np.array(m) for m in tangents(c.leg, at, loads, 0.0))
+    stiffness, damping = (np.array(m) for m in tangents(c.leg, at, loads, 0.0, joint_damping(c.leg, at)))
     found = minus_slope(lambda d: q(c.p + d, still), 1e-6)
     np.testing.assert_allclose(stiffness, found, atol=1e-5 * np.abs(found).max())
     found = minus_slope(lambda d: q(c.p, d), 1e-5)

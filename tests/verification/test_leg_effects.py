@@ -151,7 +151,7 @@ def test_a_legs_tangents_and_power_hold_the_effects(name: str, random: np.random
 
         x, u = np.array(p), np.array(v)
         at = shape(leg, p, v)
-        stiffness, damping = (np.array(m) for m in tangents(leg, at, strut_loads(leg, at, crush), 0.0))
+        stiffness, damping = (np.array(m) for m in tangents(leg, at, strut_loads(leg, at, crush), 0.0, joint_damping(leg, at)))
         damping -= np.array(joint_damping(leg, at))
         by_speed = minus_slope(lambda d, x=x, u=u: q(x, u + d), 1e-7)
         np.testing.assert_allclose(damping, by_speed, atol=2e-5 * max(np.abs(by_speed).max(), 1e3))

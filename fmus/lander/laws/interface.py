@@ -5,7 +5,7 @@ from typing import NamedTuple
 from .base_motion import BaseState, as_base
 from .compiled import jit
 from .leg import Leg, shape
-from .leg_dynamics import leg_motion, mobility, tangents
+from .leg_dynamics import mobility, motion_of_shape, tangents
 from .leg_inertia import Nodes, carried, first_moment, leg_kinetic
 from .leg_stepping import LegState
 from .soil_stepping import InterfaceModel
@@ -65,9 +65,9 @@ def interface_model(leg: Leg, gravity: float, base: BaseState, state: LegState, 
     frame = as_base(base, gravity)
     own = apply_transposed(body, force)
     at = shape(leg, state.position, state.velocity)
-    motion = leg_motion(leg, frame, state.position, state.velocity, own, ball, state.crush)
+    motion = motion_of_shape(leg, frame, at, state.position, state.velocity, own, ball, state.crush)
     y = mobility(leg, at)
-    stiffness, damping = tangents(leg, at, motion.loads, motion.damping)
+    stiffness, damping = tangents(leg, at, motion.loads, motion.damping, motion.joints)
     free = sub(motion.nodes.pad, apply(y, own))
     fall = (-gravity, 0.0, 0.0)
     return InterfaceModel(

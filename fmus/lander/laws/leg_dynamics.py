@@ -23,6 +23,7 @@ class Motion(NamedTuple):
     right: float  # axial force incl. bearing friction, tension positive, N
     left: float
     damping: float  # dF/dv of the primary's bearing friction, N s/m
+    joints: Matrix  # viscous damping of the joints against p', N s/m
     power: float  # of all forces inside the leg; negative: taken from the motion, W
 
 
@@ -33,11 +34,17 @@ def leg_motion(leg: Leg, base: Base, p: Vector, v: Vector, force: Vector, ball: 
     p, v    ball joint's position (m) and velocity (m/s) relative to B
     force   on the pad at the ball joint, N;  ball  torque of the ball joint on the pad, N m
     """
-    at = shape(leg, p, v)
+    return motion_of_shape(leg, base, shape(leg, p, v), p, v, force, ball, crush)
+
+
+@jit
+def motion_of_shape(leg: Leg, base: Base, at: Shape, p: Vector, v: Vector, force: Vector, ball: Vector, crush: Crush) -> Motion:
+    """`leg_motion` where the shape is known."""
     loads = strut_loads(leg, at, crush)
     e = at.axis
     still = bias(leg, base, at, p, v)
-    drag = apply_damping(joint_damping(leg, at), v)
+    joints = joint_damping(leg, at)
+    drag = apply_damping(joints, v)
     lever = scale(1.0 / at.length, cross(e, ball))  # reaction -ball on the piston, as a force on p
     outside = add(force, add(drag, lever))
     m_n = lateral_mass(leg, at)
@@ -61,7 +68,7 @@ def leg_motion(leg: Leg, base: Base, p: Vector, v: Vector, force: Vector, ball: 
 
     a = axpy(axial, e, lateral)
     power = primary * at.stretch - right * right_rate - left * left_rate + dot(drag, v)
-    return Motion(a, accelerated(leg, at, still, a), loads, primary, right, left, friction.damping, power)
+    return Motion(a, accelerated(leg, at, still, a), loads, primary, right, left, friction.damping, joints, power)
 
 
 @jit
@@ -75,18 +82,18 @@ def lateral_acceleration(leg: Leg, at: Shape, still: Nodes, outside: Vector, rig
 
 
 @jit
-def tangents(leg: Leg, at: Shape, loads: Loads, friction: float) -> tuple[Matrix, Matrix]:
+def tangents(leg: Leg, at: Shape, loads: Loads, friction: float, joints: Matrix) -> tuple[Matrix, Matrix]:
     """-dQ/dp (N/m) and -dQ/dv (N s/m) of the struts' forces on p, for Newton's matrix and the reduced interface model.
 
     Material and geometric stiffness of the struts and all damping; inertia's dependence on p is left out (a thousandth of these).
-    friction   slope of the primary's bearing friction, N s/m
+    friction   slope of the primary's bearing friction, N s/m;  joints  viscous damping of the joints, N s/m
     """
     e, s = at.axis, at.length
     arm = leg.geometry.cylinder / s
     lateral = plus(identity(1.0), times(-1.0, outer(e, e)))
     p = loads.primary
     stiffness = plus(times(p.stiffness, outer(e, e)), times(-p.force / s, lateral))
-    damping = plus(times(p.damping + friction, outer(e, e)), joint_damping(leg, at))
+    damping = plus(times(p.damping + friction, outer(e, e)), joints)
     for u, length, load in ((at.right, at.right_length, loads.right), (at.left, at.left_length, loads.left)):
         along = scale(arm, across(e, u))
         side = across(e, u)

@@ -10,6 +10,7 @@ from .interface import interface_model, leg_energy, pad_state
 from .leg import Crush, Leg, Loads, bottomed, shape, strokes
 from .leg_dynamics import leg_motion, tangents
 from .leg_inertia import axial_mass, base_coupling, lateral_mass
+from .leg_joints import joint_damping
 from .leg_reaction import mount_wrench
 from .leg_stepping import LegState, PadLoad, Stage, start_state, step_leg
 from .soil_stepping import InterfaceModel
@@ -105,7 +106,7 @@ def write_mount_model(leg: Leg, base: BaseState, now: LegState, loads: Loads, fr
     at = shape(leg, now.position, now.velocity)
     m_e, m_n = axial_mass(leg), lateral_mass(leg, at)
     straight, turning = base_coupling(leg, at, now.position)
-    stiffness, damping = tangents(leg, at, loads, friction)
+    stiffness, damping = tangents(leg, at, loads, friction, joint_damping(leg, at))
     body = rotation(base.attitude)
     back = transpose(body)
     put_vector(out, 0, now.position)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from .base_motion import BaseMotion, BaseState, as_base, base_at
 from .compiled import jit
 from .leg import Crush, Leg, crushed, shape
-from .leg_dynamics import Motion, leg_motion, mobility, tangents
+from .leg_dynamics import Motion, leg_motion, mobility, motion_of_shape, tangents
 from .leg_inertia import Base, times_diagonal
 from .leg_joints import ball_torque
 from .leg_reaction import mount_wrench
@@ -159,7 +159,7 @@ def solve_stage(
         q = normalise(multiply(q0, from_rotation_vector(axpy(h, w, turn0))))
         ball = ball_torque(leg, base, at, apply_transposed(body, apply(rotation(q), w)))
         force = answer(load, here, body, base.rate, p, v)
-        motion = leg_motion(leg, base, p, v, force, ball, crush)
+        motion = motion_of_shape(leg, base, at, p, v, force, ball, crush)
         residual = sub(motion.acceleration, a)
         now = dot(residual, residual)
         if now > size and share > 0.01:  # no progress: go back half of the last step
@@ -167,7 +167,7 @@ def solve_stage(
             a = axpy(-share, step, a)
         else:
             size, share = now, 1.0
-            stiffness, damping = tangents(leg, at, motion.loads, motion.damping)
+            stiffness, damping = tangents(leg, at, motion.loads, motion.damping, motion.joints)
             slope = plus(times(h, plus(damping, ground_damping)), times(h * h, plus(stiffness, ground_stiffness)))
             implicit = product(mobility(leg, at), slope)
             step = solve(plus(identity(1.0), implicit), residual)

@@ -14,7 +14,7 @@ from .blocks import quaternion, vector
 from .compiled import jit
 from .footpad import POINTS, Footpad, PadMotion, PadTangents, Wrench, lever, pad_power, pad_wrench
 from .leg import Crush, Leg, Shape, shape
-from .leg_dynamics import Motion, leg_motion, tangents
+from .leg_dynamics import Motion, motion_of_shape, tangents
 from .leg_inertia import Base, accelerated, axial_mass, base_coupling, lateral_mass, times_diagonal
 from .leg_joints import ball_torque
 from .leg_reaction import mount_wrench
@@ -161,6 +161,21 @@ def body_at(start: Quaternion, explicit: Array, turn: Vector, a: Array, gravity:
     return BodyAt(x, v, q, rate, r, Base(apply_transposed(r, pull), rate, apply_transposed(r, vector(a, 3))))
 
 
+class Explicit(NamedTuple):
+    """What a leg's stage starts from."""
+
+    position: Vector  # p, m, B
+    velocity: Vector
+    turn: Vector  # rotation vector of the pad since the step's start, L
+    rate: Vector  # of the pad, L
+
+
+@jit
+def of_row(rows: Array, i: int, j: int) -> Vector:
+    """rows[i, j:j+3] without a view, which counts its references."""
+    return (rows[i, j], rows[i, j + 1], rows[i, j + 2])
+
+
 @jit
 def leg_trial(
     leg: Leg,
@@ -168,34 +183,34 @@ def leg_trial(
     surface: Surface,
     pad: Footpad,
     body: BodyAt,
-    explicit: Array,
+    explicit: Explicit,
     start: Quaternion,
-    turn: Vector,
-    a: Array,
+    pull: Vector,
+    spin_up: Vector,
     crush: Crush,
     memory: Array,
     h: float,
 ) -> LegAt:
-    """A leg with its soil at trial accelerations a (6): what is missing in its equations."""
+    """A leg with its soil at trial accelerations (R p'' and of the pad, L): what is missing in its equations."""
     r = body.turned
-    acceleration = apply_transposed(r, vector(a, 0))
-    v = axpy(h, acceleration, vector(explicit, V))
-    p = axpy(h, v, vector(explicit, P))
-    w = axpy(h, vector(a, 3), vector(explicit, W))
-    attitude = rotation(normalise(multiply(from_rotation_vector(axpy(h, w, turn)), start)))
+    acceleration = apply_transposed(r, pull)
+    v = axpy(h, acceleration, explicit.velocity)
+    p = axpy(h, v, explicit.position)
+    w = axpy(h, spin_up, explicit.rate)
+    attitude = rotation(normalise(multiply(from_rotation_vector(axpy(h, w, explicit.turn)), start)))
     carried = add(cross(body.rate, p), v)
     motion = PadMotion(add(body.position, apply(r, p)), attitude, add(body.velocity, apply(r, carried)), w)
     wrench, soft = pad_wrench(soil, surface, pad, motion, memory)
     at = shape(leg, p, v)
     ball = ball_torque(leg, body.base, at, apply_transposed(r, w))
     own = apply_transposed(r, wrench.force)
-    law = leg_motion(leg, body.base, p, v, own, ball, crush)
+    law = motion_of_shape(leg, body.base, at, p, v, own, ball, crush)
     missing = sub(law.acceleration, acceleration)
     m_e, m_n = axial_mass(leg), lateral_mass(leg, at)
     along = dot(at.axis, missing)
     residual = apply(r, add(scale(m_n, missing), scale((m_e - m_n) * along, at.axis)))
     own_rate = apply_transposed(attitude, w)
-    spin = apply_transposed(attitude, vector(a, 3))
+    spin = apply_transposed(attitude, spin_up)
     inertial = add(times_diagonal(leg.pad_inertia, spin), cross(own_rate, times_diagonal(leg.pad_inertia, own_rate)))
     twist = sub(add(wrench.torque, apply(r, ball)), apply(attitude, inertial))
     nodes = accelerated(leg, at, law.nodes, scale(-1.0, missing))
@@ -208,7 +223,7 @@ def leg_blocks(leg: Leg, body: BodyAt, trial: LegAt, h: float) -> Blocks:
     """Newton's blocks at a trial: how what is missing answers the accelerations."""
     r, at, soft, attitude = body.turned, trial.at, trial.soft, trial.pad.attitude
     m_e, m_n = axial_mass(leg), lateral_mass(leg, at)
-    stiffness, damping = tangents(leg, at, trial.motion.loads, trial.motion.damping)
+    stiffness, damping = tangents(leg, at, trial.motion.loads, trial.motion.damping, trial.motion.joints)
     struts = plus(times(h, damping), times(h * h, stiffness))
     mass = plus(identity(m_n), times(m_e - m_n, outer(at.axis, at.axis)))
     straight, spinning = base_coupling(leg, at, trial.position)
@@ -280,12 +295,12 @@ def eliminate(trial: LegAt, b: Blocks, work: Work, i: int) -> None:
 @jit
 def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, explicit: Array, turns: Array, a: Array, h: float, i: int) -> LegAt:
     """Leg i at trial accelerations a (n + 1, 6)."""
-    row = start.legs[i]
-    crush = Crush(row[CRUSH], row[CRUSH + 1], row[CRUSH + 2], row[CRUSH + 3], row[CRUSH + 4])
-    soil, surface, turn = vehicle.soils[i], vehicle.surfaces[i], vector(turns[1 + i], 0)
-    return leg_trial(
-        vehicle.legs[i], soil, surface, vehicle.pad, body, explicit[i], quaternion(row, Q), turn, a[1 + i], crush, start.memory[i], h
-    )
+    r, k = start.legs, 1 + i
+    crush = Crush(r[i, CRUSH], r[i, CRUSH + 1], r[i, CRUSH + 2], r[i, CRUSH + 3], r[i, CRUSH + 4])
+    attitude = (r[i, Q], r[i, Q + 1], r[i, Q + 2], r[i, Q + 3])
+    known = Explicit(of_row(explicit, i, P), of_row(explicit, i, V), of_row(turns, k, 0), of_row(explicit, i, W))
+    leg, soil, surface = vehicle.legs[i], vehicle.soils[i], vehicle.surfaces[i]
+    return leg_trial(leg, soil, surface, vehicle.pad, body, known, attitude, of_row(a, k, 0), of_row(a, k, 3), crush, start.memory[i], h)
 
 
 class Trial(NamedTuple):

@@ -15,7 +15,7 @@ from .rigid_body import BodyState, body_energy
 from .surface import gap_at, normal_at
 from .twin import CRUSH, Engine, Flight, P, Q, V, Vehicle, W
 from .twin_effects import Effects
-from .twin_stepping import BALL, EFFECTS, ENGINE, SOIL, STRUTS, Progress, Ride, Settings, fly, pad_motion, state_of
+from .twin_stepping import BALL, EFFECTS, ENGINE, SOIL, STRUTS, Ride, Settings, fly, pad_motion, state_of
 from .vectors import add, apply_transposed, dot, rotation, yaw_pitch_roll
 
 Array = NDArray[np.float64]
@@ -98,24 +98,40 @@ class Run(NamedTuple):
     vehicle: Vehicle
     effects: Effects
     ride: Ride
+    settings: Settings
+    port: Array  # (6, 3): force, its slope, force added, torque, its slope, torque added; N, N/s, N m, N m/s, B
+    first: Array  # (1,): step to try first, s
+    taken: Array  # (2,): steps taken and refused so far
     body: Array  # (25,): outputs, as `show` fills them
     energy: Array  # (4,)
     legs: Array  # (n, LEG_REPORT)
 
 
 @jit
-def kept(vehicle: Vehicle, effects: Effects, ride: Ride, body: Array, energy: Array, legs: Array) -> Any:
+def kept(run: Run) -> Any:
     """A run in a list of one, in the compiled code's own memory: handed over as a tuple it takes 0.1 ms a call."""
     box = Kept()
-    box.append(Run(vehicle, effects, ride, body, energy, legs))
+    box.append(run)
     return box
 
 
 @jit
-def fly_and_show(box: Any, engine: Engine, settings: Settings, time: float, interval: float) -> Progress:
-    """An interval of a kept run and what the twin shows after it, in one call."""
+def engine_at(port: Array) -> Engine:
+    """Wrench of the engine's port, its socket included."""
+    force, torque = add(vector(port[0], 0), vector(port[2], 0)), add(vector(port[3], 0), vector(port[5], 0))
+    return Engine(force, torque, vector(port[1], 0), vector(port[4], 0))
+
+
+@jit
+def fly_and_show(box: Any, time: float, interval: float) -> float:
+    """An interval of a kept run and what the twin shows after it, in one call; gives the step (s) that could not be done, or zero."""
     run = box[0]
-    done = fly(run.vehicle, run.effects, engine, settings, run.ride, time, interval)
-    if done.ok:
-        show(run.vehicle, run.ride.flight, run.ride.a, run.ride.ledger, run.ride.touch, run.body, run.energy, run.legs)
-    return done
+    settings = Settings(run.settings.tolerance, run.settings.longest, run.first[0])
+    done = fly(run.vehicle, run.effects, engine_at(run.port), settings, run.ride, time, interval)
+    if not done.ok:
+        return done.next_step
+    run.first[0] = done.next_step
+    run.taken[0] += done.steps
+    run.taken[1] += done.rejected
+    show(run.vehicle, run.ride.flight, run.ride.a, run.ride.ledger, run.ride.touch, run.body, run.energy, run.legs)
+    return 0.0

@@ -202,10 +202,6 @@ class GearLeg(Unit):
                     f"{strut}_boundary is {self.value(f'{strut}_boundary'):g} m, "
                     f"expects less than {strut}_limit, {self.value(f'{strut}_limit'):g} m"
                 )
-        try:
-            leg_of(self, self.value("azimuth"), self.value("vehicle_mass"))
-        except ValueError as error:
-            yield str(error)
 
     def prepare(self) -> None:
         self.leg = leg_of(self, self.value("azimuth"), self.value("vehicle_mass"))

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from ..laws.footpad import COLUMNS, POINTS, Footpad, deepest
 from ..laws.rigid_body import Body, BodyState, inertia_matrix
-from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Engine, Flight, Vehicle
+from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Flight, Vehicle
 from ..laws.twin_effects import Effects, Tail, guided
-from ..laws.twin_exchange import LEG_REPORT, fly_and_show, kept, show
+from ..laws.twin_exchange import LEG_REPORT, Run, engine_at, fly_and_show, kept, show
 from ..laws.twin_stepping import Ride, Settings, pad_motion, push_at_start, start_accelerations, start_flight
-from ..laws.vectors import Vector, add, apply, from_yaw_pitch_roll, rotation
+from ..laws.vectors import Vector, apply, from_yaw_pitch_roll, rotation
 from ..shell import Unit, UnitError, input_, output, parameter, state
 from ..shell.records import Record
 from . import (
@@ -144,10 +144,6 @@ class LunarLander(Unit):
         return {"engine.force": (5000.0, 0.0, 0.0)}
 
     def check(self) -> Iterable[str]:
-        try:
-            self.prepare()
-        except ValueError as error:
-            yield str(error)
         yield from guidance_control.falling_times(self, "guidance.")
 
     def prepare(self) -> None:
@@ -166,19 +162,15 @@ class LunarLander(Unit):
         self.course = self["accelerations"].reshape(LEGS + 1, 6), self["ledger"].reshape(LEGS + 1, 4), self["touch"]
         self.ride = Ride(self.flight, *self.course, self["bob"])
         self.effects = effects_of(self)
-        self.settings = Settings(self.value("tolerance"), self.value("longest_step"), 0.0)
+        settings = Settings(self.value("tolerance"), self.value("longest_step"), 0.0)
+        self.port = self.span("engine.force", "engine.torque_added").reshape(6, 3)
         self.outputs = (
             self.span("body.position", "rates.roll"),
             self.span("energy.kinetic", "effects.work"),
             self.span("leg1.pad.position", f"soil{LEGS}.contact_time").reshape(LEGS, LEG_REPORT),
         )
-        self.run = kept(self.vehicle, self.effects, self.ride, *self.outputs)
-
-    def engine(self) -> Engine:
-        """Wrench of the engine port, its socket included."""
-        row = self.span("engine.force", "engine.torque_added").reshape(6, 3).tolist()
-        force, slope, added, torque, torque_slope, torque_added = ((x, y, z) for x, y, z in row)
-        return Engine(add(force, added), add(torque, torque_added), slope, torque_slope)
+        steps = self["next_step"], self.span("steps", "rejected")
+        self.run = kept(Run(self.vehicle, self.effects, self.ride, settings, self.port, *steps, *self.outputs))
 
     def initialise(self) -> None:
         attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))
@@ -188,21 +180,16 @@ class LunarLander(Unit):
         self.refuse_gaps(self.value("terrain.reach"))
         for k in range(LEGS):
             regolith_contact.refuse_deep(deepest(self.flight.memory[k]), f"pad {k + 1}")
-        engine = push_at_start(self.effects, self.engine(), self.flight, self.start_time)
+        engine = push_at_start(self.effects, engine_at(self.port), self.flight, self.start_time)
         if not start_accelerations(self.vehicle, engine, self.flight, self.course[0]):
             raise UnitError("the accelerations at the start could not be found; check the start position against the ground")
         show(self.vehicle, self.flight, *self.course, *self.outputs)
 
     def advance(self, time: float, step: float) -> None:
-        settings = self.settings._replace(first=self.value("next_step"))
-        done = fly_and_show(self.run, self.engine(), settings, time, step)
-        if not done.ok:
+        undone = fly_and_show(self.run, time, step)
+        if undone > 0.0:
             self.refuse_gaps(self.vehicle.pad.radius)
-            raise UnitError(f"no convergence, or too many steps, at steps of {done.next_step:.3g} s; a larger tolerance may do")
-        self["next_step"] = done.next_step
-        self["steps"] += done.steps
-        self["rejected"] += done.rejected
-
+            raise UnitError(f"no convergence, or too many steps, at steps of {undone:.3g} s; a larger tolerance may do")
 
     def refuse_gaps(self, reach: float) -> None:
         """UnitError where the height map is not whole within `reach` (m) of any pad."""
