@@ -1,6 +1,6 @@
 """The whole search on a landing that is a formula: it names what was put in, and is not caught where nuisances hide it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pytest
@@ -11,9 +11,10 @@ from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew, content
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.problem import Model
-from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.search import Search, UnflyableError
 from orchestrator.diagnosis.tasks import FitAt, Point, Probe
 from orchestrator.diagnosis.verdict import Judged, judge
 
@@ -68,6 +69,18 @@ def test_a_library_without_effects_leaves_the_base_fit_alone(missing: Mapping[st
     search = Search(ringing_landing({**HIDDEN, **missing}, seed=1), NUISANCES, (), Crew(ringing))
     base = search.base()
     assert search.raced_anew(search.fit_all([], base), [], base) == {}
+
+
+class Refused(Ringing):
+    """A lander that lands nothing."""
+
+    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+        return None
+
+
+def test_a_landing_that_cannot_be_flown_is_no_fit() -> None:
+    with pytest.raises(UnflyableError):
+        Search(ringing_landing(HIDDEN), NUISANCES, (), Crew(Refused)).base()
 
 
 def test_the_base_fit_does_not_depend_on_the_number_of_workers() -> None:

@@ -31,10 +31,10 @@ class Landing:
         return column
 
 
-def orchestrator(*arguments: object) -> Completed:
-    """The command line in the project's folder."""
+def orchestrator(*arguments: object, limit: float = 600.0) -> Completed:
+    """The command line in the project's folder; limit: s of wall time."""
     command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=600, check=False)
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=limit, check=False)
 
 
 @pytest.fixture(scope="session")

@@ -149,7 +149,7 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
     return Wrench(force, torque), t
 
 
-@jit
+@jit(inline=True)
 def with_point(t: PadTangents, k: Matrix, c: Matrix, arm: Matrix) -> PadTangents:
     """Tangents with one point's stiffness and damping at its lever [arm x] added."""
     k_arm, c_arm = times(-1.0, product(k, arm)), times(-1.0, product(c, arm))

@@ -110,7 +110,7 @@ def stop_force(stop: Stop, depth: float, v: float) -> Tangent:
     return Tangent(force, stop.stiffness + slope, stop.damping * share)
 
 
-@jit
+@jit(inline=True)
 def primary_force(core: Core, stop: Stop, d: float, v: float, crushed: float) -> Tangent:
     """Axial force that pushes the piston out, N; d is the compression of the strut, m. It crushes in compression only.
 
@@ -126,7 +126,7 @@ def primary_force(core: Core, stop: Stop, d: float, v: float, crushed: float) ->
     )
 
 
-@jit
+@jit(inline=True)
 def secondary_force(tension: Core, compression: Core, stop: Stop, d: float, v: float, pulled: float, pushed: float) -> Tangent:
     """Axial tension, N; d is the elongation of the strut, m. Each direction crushes a core of its own with a memory of its own.
 
@@ -143,7 +143,7 @@ def secondary_force(tension: Core, compression: Core, stop: Stop, d: float, v: f
     )
 
 
-@jit
+@jit(inline=True)
 def bearing_friction(mu: float, wall_force: float, v: float, slip_velocity: float) -> Tangent:
     """μ_B |F_c| tanh(v / v_b), N, along v: the strut takes it away from the motion. Eq. 1's second term; the sign is ours.
 

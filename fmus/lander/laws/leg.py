@@ -73,7 +73,7 @@ class Loads(NamedTuple):
     left: Tangent
 
 
-@jit
+@jit(inline=True)
 def shape(leg: Leg, p: Vector, v: Vector) -> Shape:
     """Kinematics from the ball joint's position p (m) and velocity v (m/s) relative to B."""
     g = leg.geometry
@@ -101,7 +101,7 @@ def shape(leg: Leg, p: Vector, v: Vector) -> Shape:
     )
 
 
-@jit
+@jit(inline=True)
 def strut_loads(leg: Leg, at: Shape, crush: Crush) -> Loads:
     """Core and stop forces of the three struts, N."""
     g = leg.geometry

@@ -37,7 +37,7 @@ def leg_motion(leg: Leg, base: Base, p: Vector, v: Vector, force: Vector, ball: 
     return motion_of_shape(leg, base, shape(leg, p, v), p, v, force, ball, crush)
 
 
-@jit
+@jit(inline=True)
 def motion_of_shape(leg: Leg, base: Base, at: Shape, p: Vector, v: Vector, force: Vector, ball: Vector, crush: Crush) -> Motion:
     """`leg_motion` where the shape is known."""
     loads = strut_loads(leg, at, crush)
@@ -81,7 +81,7 @@ def lateral_acceleration(leg: Leg, at: Shape, still: Nodes, outside: Vector, rig
     return scale(1.0 / m_n, add(across(at.axis, rest), struts))
 
 
-@jit
+@jit(inline=True)
 def tangents(leg: Leg, at: Shape, loads: Loads, friction: float, joints: Matrix) -> tuple[Matrix, Matrix]:
     """-dQ/dp (N/m) and -dQ/dv (N s/m) of the struts' forces on p, for Newton's matrix and the reduced interface model.
 

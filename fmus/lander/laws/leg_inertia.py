@@ -41,7 +41,7 @@ def moving(base: Base, r: Vector, v: Vector) -> Vector:
     return axpy(2.0, cross(base.rate, v), carried(base, r))
 
 
-@jit
+@jit(inline=True)
 def bias(leg: Leg, base: Base, at: Shape, p: Vector, v: Vector) -> Nodes:
     """Accelerations of the leg's points for p'' = 0."""
     g = leg.geometry
@@ -57,7 +57,7 @@ def bias(leg: Leg, base: Base, at: Shape, p: Vector, v: Vector) -> Nodes:
     )
 
 
-@jit
+@jit(inline=True)
 def accelerated(leg: Leg, at: Shape, still: Nodes, a: Vector) -> Nodes:
     """`still` with the relative acceleration p'' = a (m/s2) added."""
     lateral = scale(1.0 / at.length, across(at.axis, a))
@@ -71,7 +71,7 @@ def accelerated(leg: Leg, at: Shape, still: Nodes, a: Vector) -> Nodes:
     )
 
 
-@jit
+@jit(inline=True)
 def nodal_inertia(leg: Leg, a: Nodes) -> Nodes:
     """Mass times acceleration lumped to the points by the rods' consistent masses, N."""
     c, k, m = leg.cylinder_mass / 6.0, leg.piston_mass / 6.0, leg.secondary_mass / 6.0
@@ -104,7 +104,7 @@ def lateral_mass(leg: Leg, at: Shape) -> float:
     return arm * arm * swinging + leg.piston_mass / 3.0 * (1.0 + k + k * k) + leg.pad_mass
 
 
-@jit
+@jit(inline=True)
 def base_coupling(leg: Leg, at: Shape, p: Vector) -> tuple[Matrix, Matrix]:
     """How the base's accelerations load p, kg and kg m: inertia force on p = M_c pull + S spin_up.
 

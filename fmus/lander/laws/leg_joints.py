@@ -13,7 +13,7 @@ def on_pad(leg: Leg, at: Shape, force: Vector) -> Vector:
     return scale(leg.geometry.cylinder / at.length, across(at.axis, force))
 
 
-@jit
+@jit(inline=True)
 def rod_damping(leg: Leg, at: Shape, u: Vector, length: float) -> Matrix:
     """Damping of one secondary's joints against p', N s/m: sliding, turning at the truss and turning at the connection."""
     arm = leg.geometry.cylinder / at.length
@@ -27,7 +27,7 @@ def rod_damping(leg: Leg, at: Shape, u: Vector, length: float) -> Matrix:
     return times(leg.joint_damping, plus(outer(along, along), both))
 
 
-@jit
+@jit(inline=True)
 def joint_damping(leg: Leg, at: Shape) -> Matrix:
     """All joints' viscous damping but the ball joint's against p', N s/m (paper: of the order of 100 in every joint)."""
     lateral = plus(identity(1.0), times(-1.0, outer(at.axis, at.axis)))
@@ -45,7 +45,7 @@ def ball_torque(leg: Leg, base: Base, at: Shape, pad_rate: Vector) -> Vector:
     return scale(-leg.joint_damping, sub(pad_rate, add(base.rate, cross(at.axis, at.swing))))
 
 
-@jit
+@jit(inline=True)
 def side_friction(leg: Leg, u: Vector, rate: float, truss: Vector, joint: Vector) -> Tangent:
     """Bearing friction of a secondary, N: its wall force is what its own inertia puts across its end at the connection."""
     wall = across(u, scale(leg.secondary_mass / 6.0, axpy(2.0, joint, truss)))

@@ -6,20 +6,20 @@ from .leg_inertia import Base, Nodes, carried, nodal_inertia, times_diagonal
 from .vectors import Vector, add, axpy, cross, scale, sub
 
 
-@jit
+@jit(inline=True)
 def total(f: Nodes) -> Vector:
     """Sum over the points."""
     return add(add(f.upper, f.joint), add(add(f.pad, f.head), add(f.right, f.left)))
 
 
-@jit
+@jit(inline=True)
 def moment(r: Nodes, f: Nodes) -> Vector:
     """Sum of r x f over the points."""
     first = add(cross(r.upper, f.upper), add(cross(r.joint, f.joint), cross(r.pad, f.pad)))
     return add(first, add(cross(r.head, f.head), add(cross(r.right, f.right), cross(r.left, f.left))))
 
 
-@jit
+@jit(inline=True)
 def rigid_wrench(leg: Leg, base: Base) -> tuple[Vector, Vector]:
     """Force (N) and moment about B's origin (N m) that move the undeformed leg rigidly with the body.
 
@@ -42,7 +42,7 @@ def rigid_wrench(leg: Leg, base: Base) -> tuple[Vector, Vector]:
     return total(f), add(moment(r, f), spin)
 
 
-@jit
+@jit(inline=True)
 def mount_wrench(leg: Leg, base: Base, p: Vector, at: Shape, nodes: Nodes, force: Vector, ball: Vector) -> tuple[Vector, Vector]:
     """Force (N) and moment (N m, about B's origin) of the leg on the body, plus what the rigid undeformed leg would take.
 

@@ -54,7 +54,7 @@ def spring_force(soil: Soil, depth: float) -> tuple[float, float]:
     return spring, slope
 
 
-@jit
+@jit(inline=True)
 def published_normal(soil: Soil, depth: float, rate: float, datum: float) -> Normal:
     """F_n = w_b w_r (K_n δ^p + w_d C_n δ̇) for δ > 0, never negative. Eqs. 6 to 9. A drag acts inside w_b.
 
@@ -112,7 +112,7 @@ def compacted_normal(soil: Soil, depth: float, rate: float, datum: float) -> Nor
     return own
 
 
-@jit
+@jit(inline=True)
 def affected_normal(soil: Soil, own: Normal, depth: float, rate: float, datum: float) -> Normal:
     """The law's own force with the effects that stand beside it: the larger of it and the rebound, plus generic term, plus adhesion.
 
@@ -134,7 +134,7 @@ def affected_normal(soil: Soil, own: Normal, depth: float, rate: float, datum: f
     return own
 
 
-@jit
+@jit(inline=True)
 def normal_force(soil: Soil, depth: float, rate: float, datum: float) -> Normal:
     """F_n (N) at depth δ (m) and sink rate δ̇ (m/s); datum is δ_MAX (m), or UNLATCHED. Zero above the surface."""
     if depth <= 0.0:

@@ -39,7 +39,7 @@ def height_at(surface: Surface, relief: Relief, x: Vector) -> Height:
     return sum_of(plane, relief_height(relief, x[1], x[2]))
 
 
-@jit
+@jit(inline=True)
 def normal_on(surface: Surface, relief: Relief | None, x: Vector) -> Vector:
     """`normal_at`; numba takes out the branch that a type of relief does not need, from an argument only."""
     if relief is None:
@@ -47,7 +47,7 @@ def normal_on(surface: Surface, relief: Relief | None, x: Vector) -> Vector:
     return normal_of(height_at(surface, relief, x))
 
 
-@jit
+@jit(inline=True)
 def depth_on(surface: Surface, relief: Relief | None, x: Vector) -> float:
     """`depth_at`."""
     if relief is None:

@@ -8,7 +8,7 @@ from .surface import Surface, height_at
 from .vectors import Matrix, Vector, add, apply_transposed, dot, identity, outer, plus, product, scale, times
 
 
-@jit
+@jit(inline=True)
 def with_turning(
     k: Matrix, surface: Surface, relief: Relief | None, x: Vector, velocity: Vector, push: Normal, along: Vector, drag: float, turn: Matrix
 ) -> Matrix:

@@ -176,7 +176,7 @@ def of_row(rows: Array, i: int, j: int) -> Vector:
     return (rows[i, j], rows[i, j + 1], rows[i, j + 2])
 
 
-@jit
+@jit(inline=True)
 def leg_trial(
     leg: Leg,
     soil: Soil,
@@ -218,7 +218,7 @@ def leg_trial(
     return LegAt(at, law, motion, soft, wrench, ball, p, residual, twist, force, torque)
 
 
-@jit
+@jit(inline=True)
 def leg_blocks(leg: Leg, body: BodyAt, trial: LegAt, h: float) -> Blocks:
     """Newton's blocks at a trial: how what is missing answers the accelerations."""
     r, at, soft, attitude = body.turned, trial.at, trial.soft, trial.pad.attitude
@@ -249,7 +249,7 @@ def diagonal(d: Vector) -> Matrix:
     return ((d[0], 0.0, 0.0), (0.0, d[1], 0.0), (0.0, 0.0, d[2]))
 
 
-@jit
+@jit(inline=True)
 def eliminate(trial: LegAt, b: Blocks, work: Work, i: int) -> None:
     """Solve leg i for its unknowns in terms of the body's, and add what remains to the body's equations.
 
@@ -292,7 +292,7 @@ def eliminate(trial: LegAt, b: Blocks, work: Work, i: int) -> None:
                 work.rest[3 + j, 0] -= m[j]
 
 
-@jit
+@jit(inline=True)
 def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, explicit: Array, turns: Array, a: Array, h: float, i: int) -> LegAt:
     """Leg i at trial accelerations a (n + 1, 6)."""
     r, k = start.legs, 1 + i
