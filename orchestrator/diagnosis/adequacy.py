@@ -31,16 +31,20 @@ class Adequacy:
         return min(1.0, 2.0 * min(self.size, self.whiteness))
 
 
+def freedom_used(fit: Fit) -> float:
+    """How many numbers a fit could follow of its rows: tr J (J'J + 1)^-1 J'."""
+    return float(np.trace(fit.covariance @ (fit.jacobian.T @ fit.jacobian)))
+
+
 def adequacy(fit: Fit, landings: Landings) -> Adequacy:
-    """Of a fit's residual: freedom is the number of rows less what the fit could follow of them, tr J (J'J + 1)^-1 J'."""
-    followed = float(np.trace(fit.covariance @ (fit.jacobian.T @ fit.jacobian)))
+    """Of a fit's residual: freedom is the number of rows less what the fit could follow of them."""
     counted = np.concatenate(
         [
             np.concatenate([np.ones(sum(len(t.times) for t in o.tracks)), [float(not r.interval) for r in o.readings]])
             for o in landings.observations
         ]
     )
-    freedom = max(float(counted.sum()) - followed, 1.0)
+    freedom = max(float(counted.sum()) - freedom_used(fit), 1.0)
     against = _noise_freedom(landings)
     size = chi_square.sf(fit.chi2, freedom) if np.isinf(against) else variance_ratio.sf(fit.chi2 / freedom, freedom, against)
     return Adequacy(fit.chi2, freedom, float(size), _whiteness(fit, landings))

@@ -66,22 +66,27 @@ def typical_interval(times: Array) -> float:
     return float(np.median(np.diff(times))) if len(times) > 1 else 1.0
 
 
-def noise_of(tracks: Sequence[Stretch], colour: float | None) -> list[Noise]:
+def noise_of(tracks: Sequence[Stretch], colour: float | None, followed: float | None = None) -> list[Noise]:
     """Noise of the channels of one series, which have one instrument and one colour, from stretches in which the vehicle rests.
 
     The stated σ are taken in proportion; ρ and their common factor are estimated. The factor makes the INNOVATIONS as large as they are:
     they are what a whitened residual is measured by, and hardly depend on an error of ρ; σ and ρ by themselves would matter threefold.
     A short rest tells the factor to 10 % only: it is weighed with the stated σ, normal in ln σ, unless it contradicts them.
+
+    Where nearly nothing was taken at rest the stated σ stand, and ρ is judged by the whole residual of a fit that leaves no more than
+    noise. followed: numbers of each channel that it took out; None where it leaves more, and ρ is then taken for zero.
     """
     intervals = [typical_interval(t.times) for t in tracks]
     quiet = [_detrended(t.residual[t.still] / t.sigma) for t in tracks]
     known = sum(len(u) for u in quiet)
+    stated = 1.0 / TRUST**2
     if known < STILL:
-        return [Noise(t.sigma, colour or 0.0, interval) for t, interval in zip(tracks, intervals, strict=True)]
-    rho = _rho(quiet) if colour is None else colour
-    rho = 0.0 if colour is None and rho < 2.0 / np.sqrt(known) else rho
+        whole = [t.residual / t.sigma for t in tracks] if followed is not None else []
+        rho = _significant(_rho(whole, followed or 0.0), whole) if colour is None else colour
+        return [Noise(t.sigma, rho, interval, 0.5 * stated) for t, interval in zip(tracks, intervals, strict=True)]
+    rho = _significant(_rho(quiet, LOST), quiet) if colour is None else colour
     factor = np.sqrt(_innovation(quiet, rho) / (1.0 - rho**2))
-    heard, stated = 2.0 * known, 1.0 / TRUST**2
+    heard = 2.0 * known
     if abs(np.log(factor)) < CONTRADICTED * np.sqrt(1.0 / heard + 1.0 / stated):
         factor, heard = factor ** (heard / (heard + stated)), heard + stated
     factor = max(float(factor), LEAST)
@@ -96,15 +101,20 @@ def _detrended(u: Array) -> Array:
     return np.asarray(u - np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, u, LOST - 1)))
 
 
-def _rho(quiet: Sequence[Array]) -> float:
-    """Lag-one autocorrelation, 0 to 0.97, corrected for what taking out a parabola hides of a coloured noise."""
+def _significant(rho: float, quiet: Sequence[Array]) -> float:
+    """ρ, or zero where white noise would give as much."""
+    return rho if rho * np.sqrt(sum(len(u) for u in quiet)) >= 2.0 else 0.0
+
+
+def _rho(quiet: Sequence[Array], lost: float) -> float:
+    """Lag-one autocorrelation, 0 to 0.97, corrected for what taking out so many numbers of each hides of a coloured noise."""
     rho = 0.0
     for _ in range(4):
         variance = covariance = 0.0
         for u in quiet:
             if len(u) == 0:
                 continue
-            hidden = min(LOST * (1.0 + rho) / max(1.0 - rho, 1e-3) / len(u), 0.6)
+            hidden = min(lost * (1.0 + rho) / max(1.0 - rho, 1e-3) / len(u), 0.6)
             full = float(u @ u) / (1.0 - hidden)
             variance += full
             covariance += float(u[1:] @ u[:-1]) * len(u) / (len(u) - 1) + hidden * full

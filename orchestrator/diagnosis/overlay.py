@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import tomli_w
@@ -18,8 +17,8 @@ from orchestrator.diagnosis.places import PLACES
 from orchestrator.errors import AddressError
 from orchestrator.master.slave import Kind, Value, stem
 from orchestrator.scenario.expand import instances
+from orchestrator.scenario.read import Tree, merge
 
-Tree = dict[str, Any]
 Instance = tuple[str, str] | None
 """Which key of [each] a unit is expanded by, and which instance it is."""
 
@@ -63,11 +62,11 @@ def write_overlay(
     inserts: Sequence[Insert] = (),
     title: str = "",
     remarks: Iterable[str] = (),
-    results: Tree | None = None,
+    tables: Tree | None = None,
 ) -> Path:
     """The overlay as a TOML file beside any folder: `extends` the base scenario, and says of every change what, how sure and why.
 
-    results: more keys of its `[results]` table.
+    tables: what else it sets, by table: `results`, `master`.
     """
     base = addresses.blueprint.path
     if base is None:
@@ -77,11 +76,9 @@ def write_overlay(
     head: Tree = {"title": title or f"{addresses.blueprint.scenario.table.title}, revised", "extends": _relative(base, folder)}
     head["fmus"] = _relative(addresses.folder, folder)
     references = addresses.results.references
-    own = dict(results or {})
     if references and (base.parent / references).is_file():
-        own["references"] = _relative(base.parent / references, folder)
-    if own:
-        tree["results"] = own
+        tree["results"] = {"references": _relative(base.parent / references, folder)}
+    tree = merge(tree, tables or {})
     lines = [f"# {_one_line(remark)}" for remark in remarks] + [_remark(change) for change in changes]
     text = tomli_w.dumps(head) + "\n" + "\n".join(lines) + "\n\n" + tomli_w.dumps(tree)
     path.parent.mkdir(parents=True, exist_ok=True)

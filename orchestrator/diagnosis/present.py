@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,7 +87,7 @@ def _proven(request: Request, diagnosis: Diagnosis) -> Proof | None:
         proof = prove(simulation, _observed(diagnosis), null, winner, ablated, placebo)
         _take_over(diagnosis, proof)
         if named:
-            _revise(request, diagnosis, named, name)
+            _revise(request, diagnosis, named, name, proof.numerics.settings)
         write_before_after(request.out, before_after(proof))
         return proof
     finally:
@@ -103,20 +103,17 @@ def _take_over(diagnosis: Diagnosis, proof: Proof) -> None:
         outcome.gap = proof.gap
     if not proof.numerics.ok:
         outcome.verdict = "numerics"
-        outcome.warnings.append(
-            proof.numerics.reason or f"half the interval and tolerance moves a channel by {proof.numerics.worst:.2g} sigma"
-        )
+        outcome.warnings += [proof.numerics.reason] if proof.numerics.reason else []
 
 
-def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name: str) -> None:
+def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name: str, master: Mapping[str, float]) -> None:
     setup, outcome = diagnosis.setup, diagnosis.outcome
     if setup is None:
         return
     titles = [e.title for e in outcome.effects] or [named[0].effect.title]
     title = f"{setup.addresses.blueprint.scenario.table.title}, with {' and '.join(it.lower() for it in titles)}"
-    revised = write_revision(
-        request.out, setup.addresses, named, title, [f"found by orchestrator diagnose; see {request.out / 'report.html'}"]
-    )
+    source = f"found by orchestrator diagnose; see {request.out / 'report.html'}"
+    revised = write_revision(request.out, setup.addresses, named, title, [source], master)
     outcome.revised_scenario = str(revised)
     if diagnosis.found is not None:
         _keep_term(request, diagnosis, setup)

@@ -1,7 +1,8 @@
 """The verdict put to the proof: the real co-simulation flown with what was fitted, and what becomes of the gap.
 
 Five checks. Twin: the search's predictions against the units'. Ablation: without the effect the gap returns. Placebo: the runner-up,
-equally free, does worse. Energy: nothing unexplained. Interval: half of it, and of the tolerance, changes nothing that matters.
+equally free, does worse. Energy: nothing unexplained. Interval: half of it, and of the tolerance, changes nothing that matters; where the
+scenario's own are too coarse for that, all is flown with finer ones.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from orchestrator.diagnosis.observation import Observation
 from orchestrator.diagnosis.outcome import Gap
 from orchestrator.results.channels import Channels
 from orchestrator.results.energy import account_of
+from orchestrator.scenario.model import MasterTable
 
 Array = NDArray[np.float64]
 TWIN_LIMIT = 0.2  # sigma, RMS of a channel: twin against units
 NUMERICS_LIMIT = 0.2  # sigma, RMS of a channel: half the interval and the tolerance
 ENERGY_LIMIT = 2e-3  # of the energy at the start; the published landings with an effect leave 1e-4 at most
+HALVINGS = 3  # of interval and tolerance, to find some under which the next half changes nothing that matters
 RETURNS = 0.5  # of what the effect closes: without it the gap returns by this much at least
 NULL, WINNER, ABLATED, PLACEBO = "nothing missing", "winner", "without the effect", "runner-up"
 
@@ -80,6 +83,12 @@ class Numerics:
     channels: Mapping[str, float]
     ok: bool
     reason: str = ""
+    halved: int = 0
+    """How often both had been halved before half of them changed so little."""
+    settings: Mapping[str, float] = field(default_factory=dict)
+    """Of the master, so halved; empty for the scenario's own."""
+    own: float = float("nan")
+    """The worst channel with the scenario's own."""
 
     @property
     def worst(self) -> float:
@@ -113,31 +122,49 @@ def prove(
     """Fly them all. ablated: the winner's nuisances without its effect. Without a winner the null alone is proven."""
     before = simulation.flown
     beliefs = [(role, it) for role, it in ((NULL, null), (WINNER, winner), (ABLATED, ablated), (PLACEBO, runner_up)) if it is not None]
-    flown = [one for role, it in beliefs for k in range(len(landings)) if (one := _flown(simulation, landings, role, it, k)) is not None]
     tested = winner or null
     first = next((k for k, values in enumerate(tested.values) if values is not None), 0)
     numerics = numerics_gate(simulation, tested.values[first] or {}, tested.inserts, landings[first], tested.seen[first])
+    settings = {"master": dict(numerics.settings)} if numerics.settings else {}
+    asked = [(role, it, k) for role, it in beliefs for k in range(len(landings))]
+    flown = [one for ask in asked if (one := _flown(simulation, landings, *ask, settings)) is not None]
     gap = _gap(flown, landings)
     checks = _checks(flown, numerics)
-    return Proof(flown, gap, checks, numerics, _warnings(checks, flown), simulation.flown - before, landings)
+    return Proof(flown, gap, checks, numerics, _warnings(checks, flown, numerics), simulation.flown - before, landings)
 
 
 def numerics_gate(
     simulation: CoSimulation, values: Mapping[str, ArrayLike], inserts: Sequence[Insert], landing: Observed, seen: Mapping[str, float]
 ) -> Numerics:
-    """Two flights: with the scenario's interval and tolerance, and with half of both."""
+    """Flights with the scenario's interval and tolerance, with half of both, and so on until the half changes nothing that matters.
+
+    Where that never comes: what the first half changed.
+    """
     master = simulation.addresses.blueprint.scenario.table.master
-    least = min(master.min_interval, 0.5 * master.max_interval)
-    half = {"max_interval": 0.5 * master.max_interval, "tolerance": 0.5 * master.tolerance, "min_interval": least}
     usual = _fly(simulation, values, inserts, landing, {})
-    finer = _fly(simulation, values, inserts, landing, {"master": half})
-    failed = next((it.reason for it in (usual, finer) if it.course is None), "")
-    if usual.course is None or finer.course is None:
-        return Numerics({}, False, failed)
-    rows = [landing.observation.predicted(it.course, seen) for it in (usual, finer) if it.course is not None]
-    channels = in_sigmas(landing.observation, rows[1] - rows[0])
-    distrusted = usual.reason or finer.reason
-    return Numerics(channels, not distrusted and max(channels.values(), default=0.0) <= NUMERICS_LIMIT, distrusted)
+    found: list[Numerics] = []
+    for halved in range(HALVINGS + 1):
+        finer = _fly(simulation, values, inserts, landing, {"master": finer_settings(master, halved + 1)})
+        if usual.course is None or finer.course is None:
+            found.append(Numerics({}, False, usual.reason if usual.course is None else finer.reason))
+            break
+        rows = [landing.observation.predicted(course, seen) for course in (usual.course, finer.course)]
+        channels, distrusted = in_sigmas(landing.observation, rows[1] - rows[0]), usual.reason or finer.reason
+        worst = max(channels.values(), default=0.0)
+        own = found[0].own if found else worst
+        settings = finer_settings(master, halved) if halved else {}
+        found.append(Numerics(channels, not distrusted and worst <= NUMERICS_LIMIT, distrusted, halved, settings, own))
+        if found[-1].ok or distrusted:
+            break
+        usual = finer
+    return found[-1] if found[-1].ok else found[0]
+
+
+def finer_settings(master: MasterTable, halved: int) -> dict[str, float]:
+    """The master's interval and tolerance, halved so often; its least interval where the greatest comes below it."""
+    share = 0.5**halved
+    greatest = share * master.max_interval
+    return {"max_interval": greatest, "tolerance": share * master.tolerance, "min_interval": min(master.min_interval, greatest)}
 
 
 def in_sigmas(observation: Observation, difference: Array) -> dict[str, float]:
@@ -158,12 +185,14 @@ def _fly(
     return simulation.fly(values, inserts, landing.stop, observation.columns, observation.final, settings)
 
 
-def _flown(simulation: CoSimulation, landings: Sequence[Observed], role: str, belief: Belief, k: int) -> Flown | None:
+def _flown(
+    simulation: CoSimulation, landings: Sequence[Observed], role: str, belief: Belief, k: int, settings: dict[str, Any]
+) -> Flown | None:
     values = belief.values[k] if k < len(belief.values) else None
     if values is None:
         return None
     landing, nan = landings[k], float("nan")
-    flight = _fly(simulation, values, belief.inserts, landing, {})
+    flight = _fly(simulation, values, belief.inserts, landing, settings)
     if flight.course is None:
         return Flown(role, landing.name, landing.holdout, nan, nan, {}, {}, nan, flight.reason or "not flown to the end")
     observation = landing.observation
@@ -223,7 +252,8 @@ def _checks(flown: Sequence[Flown], numerics: Numerics) -> dict[str, Any]:
         for channel, sigmas in it.twin.items():
             twin[channel] = max(sigmas, twin.get(channel, 0.0))
     energies = [it.energy for it in flown if np.isfinite(it.energy)]
-    checks: dict[str, Any] = {"chi2": chi2, "interval": {"channels": dict(numerics.channels), "worst": numerics.worst, "ok": numerics.ok}}
+    interval = {"channels": dict(numerics.channels), "worst": numerics.worst, "halved": numerics.halved, "ok": numerics.ok}
+    checks: dict[str, Any] = {"chi2": chi2, "interval": interval}
     if twin:
         worst = max(twin.values())
         checks["twin"] = {"channels": twin, "worst": worst, "ok": worst <= TWIN_LIMIT}
@@ -240,8 +270,13 @@ def _checks(flown: Sequence[Flown], numerics: Numerics) -> dict[str, Any]:
     return checks
 
 
-def _warnings(checks: Mapping[str, Any], flown: Sequence[Flown]) -> list[str]:
+def _warnings(checks: Mapping[str, Any], flown: Sequence[Flown], numerics: Numerics) -> list[str]:
     said = [f"{it.belief}, {it.landing}: {it.reason}" for it in flown if it.reason]
+    if numerics.halved:
+        said.append(
+            f"half the scenario's interval and tolerance move a channel by {numerics.own:.2f} sigma: flown with "
+            f"{0.5**numerics.halved:g} of both, half of which moves {numerics.worst:.2f} sigma"
+        )
     words = {
         "twin": "twin and units differ by {worst:.2f} sigma: the search's own numbers are not exact",
         "energy": "{worst:.2%} of the energy is unexplained, expects at most {limit:.1%}",

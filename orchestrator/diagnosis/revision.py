@@ -19,16 +19,24 @@ from orchestrator.scenario.read import Tree
 REVISED = "revised.toml"
 
 
-def write_revision(folder: Path, addresses: Addresses, named: Sequence[Named], title: str = "", remarks: Sequence[str] = ()) -> Path:
+def write_revision(
+    folder: Path,
+    addresses: Addresses,
+    named: Sequence[Named],
+    title: str = "",
+    remarks: Sequence[str] = (),
+    master: Mapping[str, float] | None = None,
+) -> Path:
     """revised.toml: the effects' values and the units they add; what was only uncertain before the landing stays as it was.
 
-    Offsets of clocks are no unit's: they stand in `[results] clock_offsets`.
+    Offsets of clocks are no unit's: they stand in `[results] clock_offsets`. master: settings other than the scenario's.
     """
     moves = [move for it in named for move in it.moves()]
     applied = applied_moves(addresses, moves)
     changes = [_change(addresses, address, applied, named) for address in applied.values]
     lines = [*remarks, *_clock_remarks(applied.seen)]
-    return write_overlay(folder / REVISED, addresses, changes, inserts_of(named), title, lines, _clock_table(applied.seen))
+    tables = _clock_table(applied.seen) | ({"master": dict(master)} if master else {})
+    return write_overlay(folder / REVISED, addresses, changes, inserts_of(named), title, lines, tables)
 
 
 def write_landing(
@@ -81,4 +89,4 @@ def _clock_remarks(seen: Mapping[str, float]) -> list[str]:
 
 def _clock_table(seen: Mapping[str, float]) -> Tree:
     offsets = {name.partition(".")[2]: offset for name, offset in seen.items() if offset and name.startswith("clock.")}
-    return {"clock_offsets": offsets} if offsets else {}
+    return {"results": {"clock_offsets": offsets}} if offsets else {}

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.adequacy import adequacy
+from orchestrator.diagnosis.adequacy import adequacy, freedom_used
 from orchestrator.diagnosis.align import first_contact, swapped
+from orchestrator.diagnosis.climb import explains
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
@@ -71,8 +72,10 @@ def align(setup: Setup, crew: Crew) -> str:
 
 
 def hear_noise(setup: Setup, crew: Crew, fit: Fit) -> list[Course]:
-    """Set the noise of every track from the stretch at rest; gives the courses of the fit."""
+    """Set the noise of every track from the stretch at rest, or what little is known without; gives the courses of the fit."""
     courses = []
+    channels = sum(len(o.tracks) for o in setup.landings.observations)
+    followed = freedom_used(fit) / channels if channels and explains(fit.chi2, setup.landings.size) else None
     for k, (observation, part) in enumerate(zip(setup.landings.observations, setup.landings.parts, strict=True)):
         course = look(setup, crew, fit.coordinates, fit.z, k, CONTACTS)
         if course is None:
@@ -80,11 +83,11 @@ def hear_noise(setup: Setup, crew: Crew, fit: Fit) -> list[Course]:
         courses.append(course)
         fast = np.max(np.abs([course.columns[name] for name in RATES]), axis=0) > RESTING
         rest = float(course.times[np.flatnonzero(fast)[-1]]) + SETTLED if fast.any() else 0.0
-        observation.set_noise(_heard(observation, fit.predicted[part], rest))
+        observation.set_noise(_heard(observation, fit.predicted[part], rest, followed))
     return courses
 
 
-def _heard(observation: Observation, predicted: Array, rest: float) -> list[Noise]:
+def _heard(observation: Observation, predicted: Array, rest: float, followed: float | None) -> list[Noise]:
     """Noise of every track, series by series, from samples later than `rest`, s since first contact."""
     found: dict[int, Noise] = {}
     for places in observation.series.values():
@@ -93,7 +96,7 @@ def _heard(observation: Observation, predicted: Array, rest: float) -> list[Nois
             Stretch(t.times, observation.raw(predicted, i), t.times - observation.shift > rest, t.sigma)
             for i, t in zip(places, tracks, strict=True)
         ]
-        found |= dict(zip(places, noise_of(stretches, tracks[0].colour), strict=True))
+        found |= dict(zip(places, noise_of(stretches, tracks[0].colour, followed), strict=True))
     return [found[i] for i in range(len(observation.tracks))]
 
 

@@ -96,6 +96,35 @@ def test_the_stated_sigmas_of_a_series_keep_their_proportion() -> None:
 def test_a_short_rest_or_a_stated_colour_leaves_things_as_they_are() -> None:
     times = np.arange(60) * 0.04
     rows = np.random.default_rng(4).standard_normal((3, 60))
-    assert noise_of(at_rest(rows, times, 0.3, 2.0), None)[0] == Noise(0.3, 0.0, pytest.approx(0.04))
+    assert noise_of(at_rest(rows, times, 0.3, 2.0), None)[0] == Noise(0.3, 0.0, pytest.approx(0.04), pytest.approx(50.0))
     assert noise_of(at_rest(rows, times, 0.3, 2.0), 0.5)[0].rho == 0.5
     assert noise_of(at_rest(rows, times, 0.3), 0.5)[1].rho == 0.5
+
+
+FOLLOWED = 5
+
+
+def never_at_rest(random: np.random.Generator, rho: float) -> list[Stretch]:
+    """Three rows of 72 samples in motion: what a fit with five smooth columns a row leaves of noise stated as 0.3."""
+    times = np.arange(72) * 0.05
+    basis, _ = np.linalg.qr(np.cos(np.outer(times, np.arange(FOLLOWED)) * np.pi / times[-1]))
+    rows = [coloured(random, times, Noise(0.3, rho, 0.05)) for _ in range(3)]
+    return [Stretch(times, row - basis @ (basis.T @ row), times > times[-1], 0.3) for row in rows]
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.4, 0.8])
+def test_the_colour_of_what_never_rests_is_judged_by_what_an_adequate_fit_leaves(rho: float) -> None:
+    """216 samples tell ρ to sqrt((1 - ρ²)/216), 0.06 at most; the fit takes out 15 numbers, which is corrected for to 0.05."""
+    random = np.random.default_rng(6)
+    found, p = [], []
+    for _ in range(100):
+        rows = never_at_rest(random, rho)
+        noise = noise_of(rows, None, FOLLOWED)[0]
+        found.append(noise.rho)
+        p.append(ljung_box(Whitening(rows[0].times, noise)(rows[0].residual)))
+    assert np.mean(found) == pytest.approx(rho, abs=0.05)
+    assert np.mean(np.array(p) < 0.001) < 0.05, "white enough: a tenth of a per cent is due, and five columns are taken out"
+
+
+def test_what_a_fit_leaves_that_does_not_explain_the_data_tells_no_colour() -> None:
+    assert noise_of(never_at_rest(np.random.default_rng(6), 0.8), None)[0].rho == 0.0

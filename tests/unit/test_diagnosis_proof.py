@@ -21,18 +21,21 @@ SIGMA = 0.01
 
 
 class Stub:
-    """pitch = slope t; half the interval adds `unresolved` to it."""
+    """pitch = slope t; half the interval moves it by `unresolved`, half of that by half as much; `wild`: every flight moves it."""
 
-    def __init__(self, unresolved: float = 0.0, reason: str = "") -> None:
+    def __init__(self, unresolved: float = 0.0, reason: str = "", wild: float = 0.0) -> None:
         table = SimpleNamespace(master=MasterSettings())
         self.addresses = SimpleNamespace(blueprint=SimpleNamespace(scenario=SimpleNamespace(table=table)))
-        self.unresolved, self.reason, self.flown = unresolved, reason, 0
+        self.unresolved, self.reason, self.wild, self.flown = unresolved, reason, wild, 0
+        self.intervals: list[float] = []
 
     def fly(self, values: Any, inserts: Any, stop: float, columns: Any, final: Any, settings: Any = None) -> Flight:
         self.flown += 1
         if values.get("fails"):
             return Flight(None, "leg+Z gave up")
-        pitch = values["slope"] * TIMES + (self.unresolved if settings else 0.0)
+        share = settings["master"]["max_interval"] / MasterSettings().max_interval if settings else 1.0
+        self.intervals.append(share)
+        pitch = values["slope"] * TIMES + 2.0 * self.unresolved * share + self.wild * self.flown
         return Flight(Course(TIMES, {PITCH: pitch}, {"stroke": values["slope"]}), self.reason)
 
 
@@ -77,12 +80,29 @@ def test_a_twin_that_is_off_an_ablation_that_is_as_good_and_a_better_runner_up_a
     assert placebo.startswith("the runner-up does as well in the co-simulation")
 
 
-def test_an_unresolved_simulation_fails_the_gate() -> None:
-    landing = observed("one", 1.0)
-    fine, coarse = (numerics_gate(Stub(u), {"slope": 1.0}, (), landing, {}) for u in (0.001, 0.01))
-    assert fine.ok
+def test_an_unresolved_simulation_is_resolved_by_finer_intervals_or_fails_the_gate() -> None:
+    landing, wild = observed("one", 1.0), Stub(wild=0.01)
+    fine, coarse = (numerics_gate(Stub(u), {"slope": 1.0}, (), landing, {}) for u in (0.001, 0.007))
+    assert (fine.ok, fine.halved, fine.settings) == (True, 0, {})
     assert fine.worst == pytest.approx(0.1)
-    assert not coarse.ok
+    assert (coarse.ok, coarse.halved) == (True, 2)
+    assert (coarse.own, coarse.worst) == pytest.approx((0.7, 0.175))
+    assert coarse.settings["max_interval"] == pytest.approx(0.25 * MasterSettings().max_interval)
+    assert coarse.settings["tolerance"] == pytest.approx(0.25 * MasterSettings().tolerance)
+    never = numerics_gate(wild, {"slope": 1.0}, (), landing, {})
+    assert (never.ok, never.halved, never.settings) == (False, 0, {})
+    assert never.worst == pytest.approx(1.0)
+    assert wild.intervals == [1.0, 0.5, 0.25, 0.125, 0.0625]
+
+
+def test_what_the_scenarios_interval_does_not_resolve_is_flown_with_a_finer_one() -> None:
+    simulation = Stub(0.003)
+    found = prove(simulation, [observed("one", 1.0)], belief(0.5, 1), belief(1.0, 1))
+    assert simulation.intervals == [1.0, 0.5, 0.25, 0.5, 0.5]
+    assert found.checks["interval"]["halved"] == 1
+    assert found.warnings[0] == (
+        "half the scenario's interval and tolerance move a channel by 0.30 sigma: flown with 0.5 of both, half of which moves 0.15 sigma"
+    )
 
 
 def test_a_run_that_cannot_be_trusted_fails_the_gate() -> None:

@@ -165,8 +165,10 @@ def test_a_twin_s_column_leads_back_to_the_recorded_one(scenario: str) -> None:
 
 def test_the_revised_scenario_has_the_effects_and_not_the_nuisances(zupp: Addresses, tmp_path: Path) -> None:
     found = [named("inertial_drag", drag=2000.0), named("ground_effect", share=0.2, height=0.1), named("clock_offset", offset=0.03)]
-    path = write_revision(tmp_path / "out", zupp, found, remarks=["by a search"])
+    path = write_revision(tmp_path / "out", zupp, found, remarks=["by a search"], master={"max_interval": 5e-4})
     revised = addresses_of(path)
+    assert revised.blueprint.scenario.table.master.max_interval == 5e-4
+    assert revised.blueprint.scenario.table.master.tolerance == zupp.blueprint.scenario.table.master.tolerance
     assert revised.base_value("soil.inertial_drag").tolist() == [2000.0]
     assert revised.base_value("plume.share").tolist() == [0.2]
     np.testing.assert_allclose(revised.base_value("plume.height"), [np.exp(0.1)])

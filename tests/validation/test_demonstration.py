@@ -11,16 +11,17 @@ import pytest
 from conftest import orchestrator
 from hidden_landings import Case, Vehicle, write
 
-pytestmark = pytest.mark.long
+pytestmark = pytest.mark.slow
 
 
 CASES = {  # the dearest first
     "a law outside the library": Case("outside_yaw_angle", 300.0, 14, "none_of_my_effects"),
+    "one of two that look alike": Case("telemetry_lowpass", 30.0, 15, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
     "a force in the soil": Case("soil_damping", 150.0, 11, "effect", ("soil_damping",)),
     "a sensor's axes": Case("gyro_cross_axis", 150.0, 12, "effect", ("gyro_cross_axis",)),
     "nothing": Case("", 0.0, 13, "nothing_missing"),
-    "one of two that look alike": Case("telemetry_lowpass", 30.0, 15, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
 }
+BUDGET = 8000  # landings: beyond them only what the verdict needs, no law for what is outside the library
 
 
 Diagnosis = dict[str, Any]
@@ -41,15 +42,15 @@ def diagnoses(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Fu
 def diagnosed(folder: Path) -> Diagnosis:
     done = orchestrator(
         "diagnose", "apollo11_zupp", "--measured", folder / "fit", "--holdout", folder / "holdout", "--out", folder / "out",
-        "--verdict-only", "--workers", 1, limit=1800.0,
+        "--verdict-only", "--workers", 1, "--budget", BUDGET, limit=1800.0,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return dict(json.loads((folder / "out" / "diagnosis.json").read_text("utf-8")))
 
 
 MISSED = {
-    "one of two that look alike": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.998: χ² 937.1 of 920 "
-    "against 948.4; started at the truth telemetry_lowpass ends at 939.3, which would be cannot_tell",
+    "one of two that look alike": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.992: χ² 859.9 of 920 "
+    "against 871.0, adequacy 1 both; without noise the filter is 4.5 in ln evidence better",
 }
 """Cases that a search is known to get wrong, with what it said."""
 
