@@ -26,6 +26,7 @@ from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses
 from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import CONTACTS, look
+from orchestrator.diagnosis.tasks import Predict
 from orchestrator.diagnosis.term_fmu import build_term_fmu
 from orchestrator.diagnosis.terms.found import as_term
 from orchestrator.scenario.locate import find_fmu
@@ -169,19 +170,24 @@ def _courses(request: Request, diagnosis: Diagnosis, proof: Proof | None) -> lis
             continue
         crew = Crew(one.make, 1, Store(None))
         try:
+            means = np.zeros(len(one.nuisances))
+            (raw,) = crew.run([Predict(one.landings, tuple(one.nuisances), (means,))])[0]
             for k in range(len(one.names)):
-                found.append(_landing(one, crew, k, fits[NULL.name], fits.get(name) if name != NULL.name else None, proof, kind))
+                found.append(_landing(one, crew, k, raw, fits[NULL.name], fits.get(name) if name != NULL.name else None, proof, kind))
         finally:
             crew.close()
     return [it for it in found if it is not None]
 
 
-def _landing(setup: Setup, crew: Crew, k: int, null: Fit, after: Fit | None, proof: Proof | None, kind: str) -> LandingCourses | None:
+def _landing(
+    setup: Setup, crew: Crew, k: int, raw: Array | None, null: Fit, after: Fit | None, proof: Proof | None, kind: str
+) -> LandingCourses | None:
+    """raw: prediction of the scenario as it stands, of all landings."""
     observation, name = setup.landings.observations[k], setup.names[k]
     first = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k, CONTACTS)
     fitted = look(setup, crew, null.coordinates, null.z, k, CONTACTS)
     then = look(setup, crew, after.coordinates, after.z, k, CONTACTS) if after is not None else None
-    if first is None or fitted is None:
+    if first is None or fitted is None or raw is None:
         return None
     sides = {it.belief: it.predicted for it in (proof.flown if proof else []) if it.landing == name and it.holdout == (kind == "holdout")}
     before, improved = sides.get(BEFORE), sides.get(WINNER)
@@ -190,7 +196,7 @@ def _landing(setup: Setup, crew: Crew, k: int, null: Fit, after: Fit | None, pro
     improved = after.predicted[part] if after is not None and improved is None else improved
     spread = _spread(after, part) if after is not None else None
     channels = [_channel(observation, i, (first, fitted, then), before, improved, spread) for i in range(len(observation.tracks))]
-    rest = [_rest(observation, i, before, improved) for i in range(len(observation.readings))]
+    rest = [_rest(observation, i, raw[part], before, improved) for i in range(len(observation.readings))]
     shown = then or fitted
     contacts = [
         Contact(leg, shown.final[c] + observation.shift)
@@ -228,10 +234,10 @@ def _channel(
     )  # fmt: skip
 
 
-def _rest(observation: Observation, i: int, before: Array, after: Array | None) -> RestValue:
+def _rest(observation: Observation, i: int, raw: Array, before: Array, after: Array | None) -> RestValue:
     reading, row = observation.readings[i], observation.places[len(observation.tracks) + i].start
     value = None if reading.interval else reading.value
     low, high = (reading.low, reading.high) if reading.interval else (None, None)
     sigma = None if reading.interval else reading.sigma
     then = None if after is None else float(after[row])
-    return RestValue(reading.name, reading.unit, float(before[row]), float(before[row]), then, value, sigma, low, high)
+    return RestValue(reading.name, reading.unit, float(raw[row]), float(before[row]), then, value, sigma, low, high)

@@ -29,7 +29,9 @@ def rest_picture(values: Sequence[RestValue], name: str = "rest") -> Picture | N
     for axes, ((kind, unit), group) in zip(panels, groups.items(), strict=True):
         _rest_panel(axes, kind, unit, group)
     styles = [(INK, "o", INK, "measured ± σ, or between bounds"), (FITTED, "|", FITTED, "scenario as it stands")]
-    styles += [(BEFORE, "o", "none", "before"), (AFTER, "o", AFTER, "after")]
+    styles.append((BEFORE, "o", "none", "before"))
+    if any(value.after is not None for value in values):
+        styles.append((AFTER, "o", AFTER, "after"))
     handles = [Line2D([], [], color=c, marker=m, markerfacecolor=f, linestyle="", markersize=5) for c, m, f, _ in styles]
     figure.legend(handles, [s[-1] for s in styles], loc="outside lower center", ncols=4, fontsize=8, frameon=False, labelcolor=INK)
     told = f"{len(values)} values at rest; {_inside(values)}"
