@@ -22,7 +22,7 @@ from orchestrator.diagnosis.report import (
 )
 from orchestrator.diagnosis.report.file_names import FileNames
 from orchestrator.diagnosis.report.numbers import chance, number, percent, signed, with_sigma
-from orchestrator.diagnosis.report.plot_dots import missed
+from orchestrator.diagnosis.report.plot_dots import missed, rest_picture
 from orchestrator.diagnosis.report.template import flat, in_words
 from orchestrator.diagnosis.report.words import caution
 
@@ -232,6 +232,14 @@ def test_a_value_between_its_bounds_misses_nothing() -> None:
     assert missed(depth, 0.012) > 0.0 > missed(depth, 0.09)  # type: ignore[operator]
     assert missed(stroke, 0.1016 + 0.00635) == pytest.approx(-1.0)
     assert missed(stroke, None) is None
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_a_picture_of_values_at_rest_has_an_after_only_where_something_was_added(named: bool) -> None:
+    picture = rest_picture(landing("one", "fit", named).rest)
+    assert picture is not None
+    (legend,) = picture.figure.legends
+    assert ("after" in [text.get_text() for text in legend.get_texts()]) == named
 
 
 def test_pairs_are_spoken_of_where_some_were_tried() -> None:
