@@ -171,7 +171,8 @@ def _courses(request: Request, diagnosis: Diagnosis, proof: Proof | None) -> lis
         crew = Crew(one.make, 1, Store(None))
         try:
             means = np.zeros(len(one.nuisances))
-            (raw,) = crew.run([Predict(one.landings, tuple(one.nuisances), (means,))])[0]
+            (flown,) = crew.run([Predict(one.landings, tuple(one.nuisances), (means,))])[0]
+            raw = np.full(one.landings.size, np.nan) if flown is None else flown
             for k in range(len(one.names)):
                 found.append(_landing(one, crew, k, raw, fits[NULL.name], fits.get(name) if name != NULL.name else None, proof, kind))
         finally:
@@ -180,14 +181,14 @@ def _courses(request: Request, diagnosis: Diagnosis, proof: Proof | None) -> lis
 
 
 def _landing(
-    setup: Setup, crew: Crew, k: int, raw: Array | None, null: Fit, after: Fit | None, proof: Proof | None, kind: str
+    setup: Setup, crew: Crew, k: int, raw: Array, null: Fit, after: Fit | None, proof: Proof | None, kind: str
 ) -> LandingCourses | None:
-    """raw: prediction of the scenario as it stands, of all landings."""
+    """raw: prediction of the scenario as it stands, of all landings; NaN where one of them cannot be flown."""
     observation, name = setup.landings.observations[k], setup.names[k]
     first = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k, CONTACTS)
     fitted = look(setup, crew, null.coordinates, null.z, k, CONTACTS)
     then = look(setup, crew, after.coordinates, after.z, k, CONTACTS) if after is not None else None
-    if first is None or fitted is None or raw is None:
+    if first is None or fitted is None:
         return None
     sides = {it.belief: it.predicted for it in (proof.flown if proof else []) if it.landing == name and it.holdout == (kind == "holdout")}
     before, improved = sides.get(BEFORE), sides.get(WINNER)

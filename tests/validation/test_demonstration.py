@@ -1,9 +1,9 @@
 """Hidden effects found from data alone, by the command line with the whole library: as many cases at a time as there are cores."""
 
 import json
-import os
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from os import cpu_count
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,6 @@ CASES = {  # the dearest first
     "nothing": Case("", 0.0, 13, "nothing_missing"),
 }
 BUDGET = 8000  # landings: beyond them only what the verdict needs, no law for what is outside the library
-
-
 Diagnosis = dict[str, Any]
 
 
@@ -31,7 +29,7 @@ Diagnosis = dict[str, Any]
 def diagnoses(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Future[Diagnosis]]]:
     """Of all cases, one process each: a search is serial in parts."""
     vehicle, begun = Vehicle(), {}
-    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+    with ThreadPoolExecutor(cpu_count() or 1) as pool:
         for what, case in CASES.items():
             folder = tmp_path_factory.mktemp(case.effect or "nothing")
             write(vehicle, case, folder)

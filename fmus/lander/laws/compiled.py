@@ -66,7 +66,7 @@ def jit(*, inline: bool = False) -> Callable[[Law], Law]: ...
 def jit(law: Law | None = None, *, inline: bool = False) -> Any:
     """Compile a law (cached on disk between processes), or give it back as it is.
 
-    `inline` pastes it into its callers: a call copies large tuples number by number, which took the twin a third of its time.
+    `inline` pastes it into its callers: a call copies large tuples number by number, which took the twin a quarter of its time.
     """
     if law is None:
         return lambda it: jit_one(it, inline)
