@@ -280,7 +280,9 @@ def _warnings(checks: Mapping[str, Any], flown: Sequence[Flown], numerics: Numer
     words = {
         "twin": "twin and units differ by {worst:.2f} sigma: the search's own numbers are not exact",
         "energy": "{worst:.2%} of the energy is unexplained, expects at most {limit:.1%}",
-        "interval": "half the interval and tolerance move a channel by {worst:.2f} sigma: the simulation is not resolved",
+        "interval": "half the interval and tolerance move a channel by {worst:.2f} sigma: the simulation is not resolved"
+        if numerics.channels
+        else f"whether half the interval and tolerance change anything is not known: {numerics.reason}",
         "ablation": "without the effect chi-square rises by {chi2_returns:.1f} only: other parameters can do what it does",
         "placebo": "the runner-up does as well in the co-simulation (chi-square {chi2_more:+.1f})",
     }

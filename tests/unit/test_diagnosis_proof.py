@@ -116,6 +116,7 @@ def test_a_landing_that_cannot_be_flown_is_said() -> None:
     failing = Belief("b", [{"fails": 1.0}], [{}])
     found = prove(Stub(), landings, belief(0.5, 1), failing)
     assert "winner, one: leg+Z gave up" in found.warnings
+    assert "whether half the interval and tolerance change anything is not known: leg+Z gave up" in found.warnings
     assert np.isnan(found.gap.fit_after)
     assert not found.numerics.ok
 

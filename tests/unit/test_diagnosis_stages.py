@@ -1,0 +1,98 @@
+"""The stages between the searches: when the noise's colour is judged without rest, and when a search begins anew."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnosis_samples import one_landing
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis import stages
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
+from orchestrator.diagnosis.noise import Noise
+from orchestrator.diagnosis.observation import Track
+from orchestrator.diagnosis.stages import hear_noise, run_search
+
+Array = NDArray[np.float64]
+TIMES = np.arange(0.02, 3.0, 0.02)
+SIGMA, RHO = 0.01, 0.7
+EFFECT = "damping"
+
+
+def never_resting(random: np.random.Generator) -> SimpleNamespace:
+    """Three rates with coloured noise, judged by a fit that predicts the truth."""
+    tracks = []
+    for channel in RATES:
+        noise = random.standard_normal(len(TIMES))
+        for k in range(1, len(noise)):
+            noise[k] = RHO * noise[k - 1] + np.sqrt(1.0 - RHO**2) * noise[k]
+        tracks.append(Track("rates", channel, channel, TIMES, SIGMA * noise, SIGMA, None))
+    return SimpleNamespace(landings=one_landing(tracks, (), {}), names=["one"])
+
+
+@pytest.mark.parametrize(("chi2", "rho"), [(1.0, RHO), (3.0, 0.0)], ids=["explains the data", "leaves more than noise"])
+def test_colour_of_what_never_rests_is_judged_by_a_fit_that_explains_the_data_only(monkeypatch: Any, chi2: float, rho: float) -> None:
+    setup = never_resting(np.random.default_rng(3))
+    grid = np.linspace(0.0, 3.0, 301)
+    moving = Course(grid, {name: np.ones(301) for name in (*RATES, *ATTITUDE)}, {})
+    monkeypatch.setattr(stages, "look", lambda *_: moving)
+    rows = setup.landings.size
+    fit: Any = SimpleNamespace(
+        coordinates=(), z=np.zeros(0), predicted=np.zeros(rows), chi2=chi2 * rows, jacobian=np.zeros((rows, 0)), covariance=np.zeros((0, 0))
+    )
+    hear_noise(setup, None, fit)  # type: ignore[arg-type]
+    heard: list[Noise] = setup.landings.observations[0].noises
+    assert [it.rho for it in heard] == pytest.approx([rho] * 3, abs=0.12)
+    assert [it.sigma for it in heard] == pytest.approx([SIGMA] * 3, rel=0.2)
+
+
+class Scripted:
+    """A search that finds what it is told, and notes whether it was asked once more. null: φ of nothing missing after its rivals."""
+
+    null = 0.0
+    again: list[str]
+
+    def __init__(self, *_: Any) -> None:
+        type(self).again = []
+
+    def base(self) -> Any:
+        return fit(100.0)
+
+    def refine_all(self, fits: list[Any], _: str) -> list[Any]:
+        return fits
+
+    def fit_all(self, *_: Any) -> dict[str, Any]:
+        return {EFFECT: fit(60.0)}
+
+    def raced_anew(self, fits: dict[str, Any], *_: Any) -> dict[str, Any]:
+        return fits
+
+    def refine_best(self, fits: dict[str, Any]) -> dict[str, Any]:
+        return fits
+
+    def back_substituted(self, fits: dict[str, Any], *_: Any) -> dict[str, Any]:
+        return fits | {NULL.name: fit(self.null)}
+
+    def once_more(self, _: Any, fits: dict[str, Any], best: str) -> dict[str, Any]:
+        self.again.append(best)
+        return fits
+
+
+def fit(objective: float) -> Any:
+    return SimpleNamespace(objective=objective, log_evidence=-objective)
+
+
+@pytest.mark.parametrize(("null", "p", "again"), [(99.0, 0.5, False), (90.0, 0.5, True), (99.0, 1e-4, True)])
+def test_a_search_whose_base_fit_misled_it_or_that_explains_too_little_begins_anew(monkeypatch: Any, null: float, p: float, again: bool) -> None:
+    """Either nothing missing itself ends 8 of φ below where the search began, or the best leaves more than noise."""
+    monkeypatch.setattr(stages, "Search", Scripted)
+    monkeypatch.setattr(Scripted, "null", null)
+    monkeypatch.setattr(stages, "hear_noise", lambda *_: [])
+    monkeypatch.setattr(stages, "renoised", lambda _, it: it)
+    monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=p))
+    setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
+    state = run_search(setup, None, 0, None, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
+    assert Scripted.again == ([EFFECT] if again else [])
+    assert state.fits[EFFECT].objective == 60.0
