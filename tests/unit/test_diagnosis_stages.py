@@ -85,7 +85,7 @@ def fit(objective: float) -> Any:
 
 
 @pytest.mark.parametrize(("null", "p", "again"), [(99.0, 0.5, False), (90.0, 0.5, True), (99.0, 1e-4, True)])
-def test_a_search_whose_base_fit_misled_it_or_that_explains_too_little_begins_anew(monkeypatch: Any, null: float, p: float, again: bool) -> None:
+def test_a_search_that_was_misled_or_explains_too_little_begins_anew(monkeypatch: Any, null: float, p: float, again: bool) -> None:
     """Either nothing missing itself ends 8 of φ below where the search began, or the best leaves more than noise."""
     monkeypatch.setattr(stages, "Search", Scripted)
     monkeypatch.setattr(Scripted, "null", null)
