@@ -17,7 +17,9 @@ from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Task
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.problem import Landings
-from orchestrator.diagnosis.tasks import Climb, Draw, Point, Start
+from orchestrator.diagnosis.tasks.begin import Start
+from orchestrator.diagnosis.tasks.draw import Draw
+from orchestrator.diagnosis.tasks.fits import Climb, Point
 
 Array = NDArray[np.float64]
 Run = Callable[[str, Sequence[Task[Any]]], list[Any]]

@@ -24,7 +24,7 @@ from orchestrator.diagnosis.problem import Model, Nobody
 from orchestrator.diagnosis.report.distinction import ENOUGH, Distinction, EffectSeen, MoreSensor
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.stages import align
-from orchestrator.diagnosis.tasks import Predict, Slopes
+from orchestrator.diagnosis.tasks.predict import Predict, Slopes
 from orchestrator.errors import MeasuredError, UserError
 
 Array = NDArray[np.float64]

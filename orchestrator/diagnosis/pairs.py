@@ -11,7 +11,8 @@ from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import Hypothesis, joined
 from orchestrator.diagnosis.problem import Model, Nobody
 from orchestrator.diagnosis.search import Search
-from orchestrator.diagnosis.tasks import FitAt, Slopes, point_of
+from orchestrator.diagnosis.tasks.fits import FitAt, point_of
+from orchestrator.diagnosis.tasks.predict import Slopes
 
 Array = NDArray[np.float64]
 SECONDS = 6  # second effects fitted beside a first

@@ -26,7 +26,7 @@ from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses
 from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import CONTACTS, look
-from orchestrator.diagnosis.tasks import Predict
+from orchestrator.diagnosis.tasks.predict import Predict
 from orchestrator.diagnosis.term_fmu import build_term_fmu
 from orchestrator.diagnosis.terms.found import as_term
 from orchestrator.scenario.locate import find_fmu

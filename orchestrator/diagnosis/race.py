@@ -15,7 +15,8 @@ from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.problem import Landings
-from orchestrator.diagnosis.tasks import Climb, Draw, FitAt, Leap, Point, point_of
+from orchestrator.diagnosis.tasks.draw import Draw, Leap
+from orchestrator.diagnosis.tasks.fits import Climb, FitAt, Point, point_of
 
 QUICK = 3  # steps before the hopeful are told from the hopeless
 HOPEFUL = 40.0  # of φ behind the best after them

@@ -17,7 +17,10 @@ from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Landings, Model, Nobody
 from orchestrator.diagnosis.race import launched, raced
-from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Probe, Refine, Timed, point_of
+from orchestrator.diagnosis.tasks.begin import Timed
+from orchestrator.diagnosis.tasks.fits import FitAt, Point, Refine, point_of
+from orchestrator.diagnosis.tasks.predict import Predict
+from orchestrator.diagnosis.tasks.probe import Probe
 
 Array = NDArray[np.float64]
 Told = Callable[[str, str, float], None]

@@ -21,7 +21,7 @@ from orchestrator.diagnosis.observation import Observation
 from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
-from orchestrator.diagnosis.tasks import Land
+from orchestrator.diagnosis.tasks.predict import Land
 from orchestrator.diagnosis.verdict import ADEQUATE, Judged, Judgement, credible, judge
 
 Array = NDArray[np.float64]

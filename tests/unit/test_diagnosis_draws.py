@@ -16,7 +16,9 @@ from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.observation import ORIGIN, Track
 from orchestrator.diagnosis.problem import Landings, Model
 from orchestrator.diagnosis.search import Search
-from orchestrator.diagnosis.tasks import Climb, Draw, Timed
+from orchestrator.diagnosis.tasks.begin import Timed
+from orchestrator.diagnosis.tasks.draw import Draw
+from orchestrator.diagnosis.tasks.fits import Climb
 
 Array = NDArray[np.float64]
 EARLY = 0.5  # s

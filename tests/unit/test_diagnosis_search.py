@@ -15,7 +15,8 @@ from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.problem import Model
 from orchestrator.diagnosis.search import Search, UnflyableError
-from orchestrator.diagnosis.tasks import FitAt, Point, Probe
+from orchestrator.diagnosis.tasks.fits import FitAt, Point
+from orchestrator.diagnosis.tasks.probe import Probe
 from orchestrator.diagnosis.verdict import Judged, judge
 
 Array = NDArray[np.float64]

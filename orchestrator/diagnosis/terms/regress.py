@@ -18,7 +18,8 @@ from orchestrator.diagnosis.climb import explains
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.search import Search
-from orchestrator.diagnosis.tasks import FitAt, Point, Predict, Slopes
+from orchestrator.diagnosis.tasks.fits import FitAt, Point
+from orchestrator.diagnosis.tasks.predict import Predict, Slopes
 from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
 from orchestrator.diagnosis.terms.term import Term
 

@@ -8,7 +8,7 @@ from typing import Literal
 from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.hypothesis import Hypothesis
-from orchestrator.diagnosis.setup import slots_of
+from orchestrator.diagnosis.vehicle import slots_of
 
 Port = Literal["soil.normal", "soil.tangential", "strut", "body", "sensor"]
 Energy = Literal["dissipative", "conservative", "active", "none"]

@@ -1,0 +1,85 @@
+"""Where a search begins: draws of the prior, each at the clock's zero that suits it best, and their first fits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate
+from orchestrator.diagnosis.fit import Fit, fitted
+from orchestrator.diagnosis.landing import Course, Lander
+from orchestrator.diagnosis.observation import ORIGIN
+from orchestrator.diagnosis.problem import Landings, Model
+from orchestrator.diagnosis.tasks.fits import Point
+
+Array = NDArray[np.float64]
+TIMES = tuple(np.linspace(-3.0, 3.0, 61).tolist())  # of z: zeros of the clock that a course is compared at
+LATER = 0.2  # s past the horizon that it is flown for that
+
+
+@dataclass(frozen=True)
+class Timed:
+    """What points are worth with threefold noise, each with the time of first contact that suits it best: one course tells of all times.
+
+    Where the data's clock is known to 50 ms only, a zero drawn at random spoils all else that was drawn with it.
+    """
+
+    landings: Landings
+    coordinates: tuple[Coordinate, ...]
+    points: tuple[Array, ...]
+    horizon: float
+
+    def __call__(self, lander: Lander) -> list[tuple[float, Array] | None]:
+        model = Model(self.landings, self.coordinates, lander, self.horizon)
+        return [self._timed(model, z.copy()) for z in self.points]
+
+    def _timed(self, model: Model, z: Array) -> tuple[float, Array] | None:
+        """z is changed in place."""
+        total = 0.0
+        for k in range(len(self.landings.observations)):
+            course = model.course(k, z, LATER)
+            if course is None:
+                return None
+            place, worth = self._clock(k), []
+            for time in TIMES if place is not None else ():
+                z[place] = time
+                worth.append(self._missed(model, k, z, course) / 9.0 + time * time)
+            if place is not None:
+                z[place] = TIMES[int(np.argmin(worth))]
+            total += self._missed(model, k, z, course) / 9.0
+        return total + float(z @ z), z
+
+    def _missed(self, model: Model, k: int, z: Array, course: Course) -> float:
+        observation = self.landings.observations[k]
+        missed = observation.residual(observation.predicted(course, model.values(z, k))) * model.weights[self.landings.parts[k]]
+        return float(missed @ missed)
+
+    def _clock(self, k: int) -> int | None:
+        """The coordinate that is this landing's zero of the clock alone."""
+        alone = (SHARED, k) if len(self.landings.observations) == 1 else (k,)
+        return next((i for i, c in enumerate(self.coordinates) if c.slots[0][0] == ORIGIN and c.landing in alone), None)
+
+
+@dataclass(frozen=True)
+class Start:
+    """The nuisances alone fitted to the first horizon from a draw of their prior: with threefold noise, then with their own."""
+
+    landings: Landings
+    nuisances: tuple[Coordinate, ...]
+    z: Array
+    horizon: float
+
+    def __call__(self, lander: Lander) -> tuple[Point, Fit] | None:
+        """Where the fit began, with the slopes there, and how it ended."""
+        model = Model(self.landings, self.nuisances, lander, self.horizon)
+        predicted = model.predict(self.z)
+        if predicted is None:
+            return None
+        slopes = model.slopes(self.z, predicted)
+        every = tuple(range(len(self.z)))
+        began = Point(self.z, predicted, slopes, self.horizon)
+        fit = fitted(model, self.z, slopes, predicted, temper=3.0, steps=4, renew=every)
+        fit = fit and fitted(model, fit.z, fit.slopes, fit.predicted, steps=8, renew=every, renewals=2)
+        return None if fit is None else (began, fit)
