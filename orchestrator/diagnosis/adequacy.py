@@ -45,8 +45,8 @@ def adequacy(fit: Fit, landings: Landings) -> Adequacy:
         ]
     )
     freedom = max(float(counted.sum()) - freedom_used(fit), 1.0)
-    against = _noise_freedom(landings)
-    size = chi_square.sf(fit.chi2, freedom) if np.isinf(against) else variance_ratio.sf(fit.chi2 / freedom, freedom, against)
+    against, judged = _noise_freedom(landings), float(fit.residual**2 @ _understated(landings))
+    size = chi_square.sf(judged, freedom) if np.isinf(against) else variance_ratio.sf(judged / freedom, freedom, against)
     return Adequacy(fit.chi2, freedom, float(size), _whiteness(fit, landings))
 
 
@@ -63,6 +63,16 @@ def _noise_freedom(landings: Landings) -> float:
             if rows > 0.0:
                 inverse += (rows / landings.size) ** 2 * max(1.0 / known - 2.0 / rows, 0.0)
     return 1.0 / inverse if inverse > 0.0 else np.inf
+
+
+def _understated(landings: Landings) -> Array:
+    """Row by row, by how much a noise that a fit told is larger than what is known without that fit, as variances."""
+    found = np.ones(landings.size)
+    for observation, part in zip(landings.observations, landings.parts, strict=True):
+        rows = found[part]
+        for noise, place in zip(observation.noises, observation.places, strict=False):
+            rows[place] = noise.understated
+    return found
 
 
 def _whiteness(fit: Fit, landings: Landings) -> float:

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-STILL = 40  # samples of a series needed to judge its noise by
+STILL = 40  # samples of a series at rest, needed to judge its noise by
 LOST = 3  # numbers of a parabola
+COLOURS = np.linspace(0.0, 0.95, 96)
+SIGNIFICANT = 2.0  # of the log-likelihood: what ρ must bring to be more than zero
 TRUST = 0.1  # of ln σ: what stated noise is taken to be known to, before the rest is heard
 CONTRADICTED = 3.0  # standard deviations: beyond, the stated noise counts for nothing
 LEAST = 0.5  # of the stated σ: data may be quieter than said, the model is not
@@ -29,6 +31,13 @@ class Noise:
     interval: float
     known: float = np.inf
     """Innovations that σ is known as well as from; σ is known to 1/√(2 known)."""
+    reference: float | None = None
+    """The σ that this is said of, where it is another: what is known without the fit that told σ. Its size is judged by it."""
+
+    @property
+    def understated(self) -> float:
+        """Variance over that of the reference."""
+        return 1.0 if self.reference is None else (self.sigma / self.reference) ** 2
 
 
 @dataclass(frozen=True)
@@ -67,67 +76,79 @@ def typical_interval(times: Array) -> float:
 
 
 def noise_of(tracks: Sequence[Stretch], colour: float | None, followed: float | None = None) -> list[Noise]:
-    """Noise of the channels of one series, which have one instrument and one colour, from stretches in which the vehicle rests.
+    """Noise of the channels of one series, which have one instrument and one colour: the likeliest ρ and common factor on the stated σ.
 
-    The stated σ are taken in proportion; ρ and their common factor are estimated. The factor makes the INNOVATIONS as large as they are:
-    they are what a whitened residual is measured by, and hardly depend on an error of ρ; σ and ρ by themselves would matter threefold.
-    A short rest tells the factor to 10 % only: it is weighed with the stated σ, normal in ln σ, unless it contradicts them.
-
-    Where nearly nothing was taken at rest the stated σ stand, and ρ is judged by the whole residual of a fit that leaves no more than
-    noise. followed: numbers of each channel that it took out; None where it leaves more, and ρ is then taken for zero.
+    The stated σ count as an observation of their own (normal in ln σ), unless the data contradict them. Judged is the whole residual of a
+    fit that leaves no more than noise, less a polynomial of as many terms as the fit followed numbers of each channel; but how large such
+    a residual is may not be judged by itself, so its reference is what rest and statement alone say. Where a fit leaves more (followed is
+    None), the samples that were taken at rest are judged, less a parabola.
     """
-    intervals = [typical_interval(t.times) for t in tracks]
-    quiet = [_detrended(t.residual[t.still] / t.sigma) for t in tracks]
-    known = sum(len(u) for u in quiet)
-    stated = 1.0 / TRUST**2
-    if known < STILL:
-        whole = [t.residual / t.sigma for t in tracks] if followed is not None else []
-        rho = _significant(_rho(whole, followed or 0.0), whole) if colour is None else colour
-        return [Noise(t.sigma, rho, interval, 0.5 * stated) for t, interval in zip(tracks, intervals, strict=True)]
-    rho = _significant(_rho(quiet, LOST), quiet) if colour is None else colour
-    factor = np.sqrt(_innovation(quiet, rho) / (1.0 - rho**2))
-    heard = 2.0 * known
-    if abs(np.log(factor)) < CONTRADICTED * np.sqrt(1.0 / heard + 1.0 / stated):
-        factor, heard = factor ** (heard / (heard + stated)), heard + stated
-    factor = max(float(factor), LEAST)
-    return [Noise(factor * t.sigma, rho, interval, 0.5 * heard) for t, interval in zip(tracks, intervals, strict=True)]
+    quiet = [u for t in tracks if len(u := t.residual[t.still] / t.sigma) > 2 * LOST]
+    known = sum(len(u) - LOST for u in quiet)
+    if followed is not None:
+        factor, rho = _likeliest([t.residual / t.sigma for t in tracks], followed, round(followed), colour)
+        reference = _likeliest(quiet, LOST, LOST, rho)[0]
+    elif known >= STILL:
+        factor, rho = _likeliest(quiet, LOST, LOST, colour)
+        reference = factor
+    else:
+        factor, rho, reference, known = 1.0, colour or 0.0, 1.0, 0
+    factor, reference = max(factor, LEAST), max(reference, LEAST)
+    heard, same = _heard(reference, known), reference == factor
+    return [
+        Noise(factor * t.sigma, rho, typical_interval(t.times), heard, None if same else reference * t.sigma) for t in tracks
+    ]
 
 
-def _detrended(u: Array) -> Array:
-    """Without the parabola that a slow settling leaves."""
-    if len(u) <= LOST:
-        return np.zeros(0)
-    t = np.linspace(-1.0, 1.0, len(u))
-    return np.asarray(u - np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, u, LOST - 1)))
+def _heard(factor: float, known: int) -> float:
+    """Innovations worth of what is known of σ: the data's, and the statement's unless they contradict each other."""
+    stated = 0.5 / TRUST**2
+    return float(known) if known and _contradicted(np.log(factor), known) else known + stated
 
 
-def _significant(rho: float, quiet: Sequence[Array]) -> float:
-    """ρ, or zero where white noise would give as much."""
-    return rho if rho * np.sqrt(sum(len(u) for u in quiet)) >= 2.0 else 0.0
+def _contradicted(distance: float, known: float) -> bool:
+    return bool(abs(distance) > CONTRADICTED * np.sqrt(0.5 / max(known, 1.0) + TRUST**2))
 
 
-def _rho(quiet: Sequence[Array], lost: float) -> float:
-    """Lag-one autocorrelation, 0 to 0.97, corrected for what taking out so many numbers of each hides of a coloured noise."""
-    rho = 0.0
-    for _ in range(4):
-        variance = covariance = 0.0
-        for u in quiet:
-            if len(u) == 0:
-                continue
-            hidden = min(lost * (1.0 + rho) / max(1.0 - rho, 1e-3) / len(u), 0.6)
-            full = float(u @ u) / (1.0 - hidden)
-            variance += full
-            covariance += float(u[1:] @ u[:-1]) * len(u) / (len(u) - 1) + hidden * full
-        rho = float(np.clip(covariance / variance, 0.0, 0.97)) if variance > 0.0 else 0.0
-    return rho
+def _likeliest(rows: Sequence[Array], lost: float, trend: int, colour: float | None) -> tuple[float, float]:
+    """Factor on σ and ρ by restricted likelihood: of each row so many numbers are lost, and a polynomial of so many terms is left free."""
+    known = sum(len(u) - lost for u in rows)
+    if known <= 0.0:
+        return 1.0, colour or 0.0
+    found = [(*_factor(known, *_square(rows, rho, trend)), float(rho)) for rho in (COLOURS if colour is None else [colour])]
+    likelihood, factor, rho = max(found)
+    if likelihood < found[0][0] + SIGNIFICANT:
+        likelihood, factor, rho = found[0]
+    return factor, rho
 
 
-def _innovation(quiet: Sequence[Array], rho: float) -> float:
-    """Variance of u_k - ρ u_{k-1}."""
-    total = count = 0.0
-    for u in quiet:
-        if len(u) > LOST + 1:
-            steps = u[1:] - rho * u[:-1]
-            total += float(steps @ steps)
-            count += len(steps) - LOST * (1.0 - rho)
-    return total / count if count > 0.0 else 1.0 - rho**2
+def _factor(known: float, square: float, volume: float) -> tuple[float, float]:
+    """The greatest log-likelihood, up to a constant, and the factor e^x where it is: -known x - square e^(-2x)/2 - (x/TRUST)²/2."""
+    free = 0.5 * np.log(max(square, 1e-12) / known)
+    stated = 0.0 if _contradicted(free, known) else 1.0 / TRUST**2
+    x = free
+    for _ in range(20):
+        spread = square * np.exp(-2.0 * x)
+        x -= (spread - known - stated * x) / (-2.0 * spread - stated)
+    return float(-known * x - 0.5 * square * np.exp(-2.0 * x) - 0.5 * stated * x * x - 0.5 * volume), float(np.exp(x))
+
+
+def _square(rows: Sequence[Array], rho: float, trend: int) -> tuple[float, float]:
+    """Sum of squares of the rows as white numbers, less the best polynomial, and the logarithm of the volume that goes with it."""
+    square = volume = 0.0
+    for u in rows:
+        white = _white(u, rho)
+        volume += (len(u) - 1) * np.log(1.0 - rho**2)
+        if trend:
+            free, triangle = np.linalg.qr(_white(np.vander(np.linspace(-1.0, 1.0, len(u)), trend), rho))
+            white = white - free @ (free.T @ white)
+            volume += 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)))))
+        square += float(white @ white)
+    return square, volume
+
+
+def _white(values: Array, rho: float) -> Array:
+    """Down the columns."""
+    found = values.copy()
+    found[1:] = (values[1:] - rho * values[:-1]) / np.sqrt(1.0 - rho**2)
+    return found

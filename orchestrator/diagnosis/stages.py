@@ -16,7 +16,7 @@ from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
-from orchestrator.diagnosis.noise import Noise, Stretch, noise_of
+from orchestrator.diagnosis.noise import TRUST, Noise, Stretch, noise_of
 from orchestrator.diagnosis.observation import Observation
 from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import Search, Told, renoised
@@ -71,11 +71,16 @@ def align(setup: Setup, crew: Crew) -> str:
     return ""
 
 
-def hear_noise(setup: Setup, crew: Crew, fit: Fit) -> list[Course]:
-    """Set the noise of every track from the stretch at rest, or what little is known without; gives the courses of the fit."""
+def hear_noise(setup: Setup, crew: Crew, fit: Fit, best: bool = False) -> list[Course]:
+    """Set the noise of every track from the stretch at rest, where that is short from what the fit leaves; gives the fit's courses.
+
+    best: of all that were tried, so that what it leaves may be noise that is larger than stated.
+    """
     courses = []
     channels = sum(len(o.tracks) for o in setup.landings.observations)
-    followed = freedom_used(fit) / channels if channels and explains(fit.chi2, setup.landings.size) else None
+    size = setup.landings.size
+    told = explains(fit.chi2, size) or (best and fit.chi2 <= size * (1.0 + 3.0 * np.hypot(np.sqrt(2.0 / size), 2.0 * TRUST)))
+    followed = freedom_used(fit) / channels if channels and told else None
     for k, (observation, part) in enumerate(zip(setup.landings.observations, setup.landings.parts, strict=True)):
         course = look(setup, crew, fit.coordinates, fit.z, k, CONTACTS)
         if course is None:
@@ -132,7 +137,7 @@ def _rehear(state: State, crew: Crew) -> None:
     """The noise judged again by the best fit's residual at rest; all fits seen anew, the best refined under it."""
     ranked = _ranked(state)
     before = [n for o in state.setup.landings.observations for n in o.noises]
-    state.courses = hear_noise(state.setup, crew, state.fits[ranked[0]]) or state.courses
+    state.courses = hear_noise(state.setup, crew, state.fits[ranked[0]], best=True) or state.courses
     after = [n for o in state.setup.landings.observations for n in o.noises]
     if all(abs(np.log(a.sigma / b.sigma)) < 0.05 and abs(a.rho - b.rho) < 0.05 for a, b in zip(after, before, strict=True)):
         return

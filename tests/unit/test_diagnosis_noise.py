@@ -75,7 +75,7 @@ def test_what_is_heard_and_what_is_stated_are_weighed() -> None:
     found = [heard(random, float(size), 45) for size in sizes]
     errors = np.log([it.sigma for it in found] / sizes)
     assert float(np.sqrt(np.mean(errors**2))) == pytest.approx(1.0 / np.sqrt(2.0 * found[0].known), rel=0.12)
-    assert found[0].known == pytest.approx(50.0 + 3.0 * 33.0, rel=0.05)
+    assert found[0].known == pytest.approx(50.0 + 3.0 * (34.0 - 3.0), rel=0.03), "a parabola goes off each row"
 
 
 def test_stated_noise_that_the_rest_contradicts_counts_for_nothing() -> None:
@@ -114,7 +114,7 @@ def never_at_rest(random: np.random.Generator, rho: float) -> list[Stretch]:
 
 @pytest.mark.parametrize("rho", [0.0, 0.4, 0.8])
 def test_the_colour_of_what_never_rests_is_judged_by_what_an_adequate_fit_leaves(rho: float) -> None:
-    """216 samples tell ρ to sqrt((1 - ρ²)/216), 0.06 at most; the fit takes out 15 numbers, which is corrected for to 0.05."""
+    """216 samples tell ρ to sqrt((1 - ρ²)/216), 0.06 at most; what the fit's 15 numbers hide of it is corrected for to 0.05."""
     random = np.random.default_rng(6)
     found, p = [], []
     for _ in range(100):
@@ -124,6 +124,29 @@ def test_the_colour_of_what_never_rests_is_judged_by_what_an_adequate_fit_leaves
         p.append(ljung_box(Whitening(rows[0].times, noise)(rows[0].residual)))
     assert np.mean(found) == pytest.approx(rho, abs=0.05)
     assert np.mean(np.array(p) < 0.001) < 0.05, "white enough: a tenth of a per cent is due, and five columns are taken out"
+
+
+@pytest.mark.parametrize("followed", [None, FOLLOWED])
+def test_a_short_rest_does_not_make_white_noise_coloured(followed: float | None) -> None:
+    """Twenty samples a row at rest. Their autocorrelation, corrected for the parabola and where it is two standard deviations, is above 0.3 in 6 % of them."""
+    random = np.random.default_rng(8)
+    times = np.arange(90) * 0.04
+    rows = [at_rest(0.3 * random.standard_normal((3, 90)), times, 0.3, times[-21]) for _ in range(300)]
+    found = np.array([noise_of(it, None, followed)[0].rho for it in rows])
+    assert np.mean(found > 0.3) < 0.03
+    assert np.mean(found > 0.0) < 0.08, "two in log-likelihood by chance: 2 %, of few samples more"
+
+
+def test_noise_that_a_fit_told_keeps_what_rest_and_statement_say_for_reference() -> None:
+    """In motion 1.25 times as large as stated, at rest as stated."""
+    random = np.random.default_rng(9)
+    times = np.arange(300) * 0.04
+    rows = 0.3 * np.where(times > 8.0, 1.0, 1.25) * random.standard_normal((3, 300))
+    alone, told = noise_of(at_rest(rows, times, 0.3, 8.0), None)[0], noise_of(at_rest(rows, times, 0.3, 8.0), None, FOLLOWED)[0]
+    assert alone.understated == 1.0
+    assert told.sigma == pytest.approx(0.3 * np.sqrt((200 * 1.25**2 + 100) / 300), rel=0.05)
+    assert told.reference == pytest.approx(alone.sigma, rel=1e-6)
+    assert told.known == alone.known
 
 
 def test_what_a_fit_leaves_that_does_not_explain_the_data_tells_no_colour() -> None:

@@ -73,6 +73,16 @@ def test_a_residual_that_is_too_large_or_coloured_is_not_adequate(what: str) -> 
     assert adequacy(replace(base_fit(landings), residual=e), landings).p < 1e-3
 
 
+def test_a_residual_as_large_as_the_noise_that_it_told_is_judged_by_what_is_known_without_it() -> None:
+    """White numbers of unit variance, but by a σ 1.4 times what rest and statement say, which are known to 5 %."""
+    landings = ringing_landing({})
+    fit = renewed(base_fit(landings), np.random.default_rng(2))
+    (observation,) = landings.observations
+    for size, low, high in ((1.0, 0.1, 1.0), (1.4, 0.0, 1e-3)):
+        observation.set_noise([replace(noise, known=200.0, reference=noise.sigma / size) for noise in observation.noises])
+        assert low <= adequacy(fit, landings).size <= high
+
+
 def test_a_bump_in_one_channel_is_found_there_and_then_and_given_to_the_port_that_explains_it() -> None:
     landings = ringing_landing({"hump": 0.04})
     fit = base_fit(landings)

@@ -89,7 +89,7 @@ def test_a_search_that_was_misled_or_explains_too_little_begins_anew(monkeypatch
     """Either nothing missing itself ends 8 of φ below where the search began, or the best leaves more than noise."""
     monkeypatch.setattr(stages, "Search", Scripted)
     monkeypatch.setattr(Scripted, "null", null)
-    monkeypatch.setattr(stages, "hear_noise", lambda *_: [])
+    monkeypatch.setattr(stages, "hear_noise", lambda *_, **__: [])
     monkeypatch.setattr(stages, "renoised", lambda _, it: it)
     monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=p))
     setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
