@@ -128,7 +128,7 @@ def test_the_colour_of_what_never_rests_is_judged_by_what_an_adequate_fit_leaves
 
 @pytest.mark.parametrize("followed", [None, FOLLOWED])
 def test_a_short_rest_does_not_make_white_noise_coloured(followed: float | None) -> None:
-    """Twenty samples a row at rest. Their autocorrelation, corrected for the parabola and where it is two standard deviations, is above 0.3 in 6 % of them."""
+    """Twenty samples a row at rest. Their autocorrelation, once corrected for the parabola and significant, is above 0.3 in 6 %."""
     random = np.random.default_rng(8)
     times = np.arange(90) * 0.04
     rows = [at_rest(0.3 * random.standard_normal((3, 90)), times, 0.3, times[-21]) for _ in range(300)]
