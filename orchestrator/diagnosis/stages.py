@@ -161,6 +161,22 @@ def try_pairs(state: State) -> None:
             if swapped_name not in state.fits:
                 state.fits[pair] = fit
                 state.hypotheses.append(hypothesis)
+    _race_pairs(state)
+
+
+def _race_pairs(state: State) -> None:
+    """The best pairs once more from the first horizon on, and from the best pair's nuisances: beside a first effect alone a second sits
+    in the minimum in which the first has put up with its absence.
+    """
+    pairs = {name: fit for name, fit in state.fits.items() if len(parts_of(name)) > 1}
+    known = [h for h in state.hypotheses if h.name in pairs]
+    raced = state.search.raced_anew(pairs, known, state.fits[NULL.name])
+    changed = [name for name in pairs if raced[name] is not pairs[name]]
+    pairs |= dict(zip(changed, state.search.refine_all([raced[name] for name in changed], "pairs"), strict=True))
+    ranked = sorted(pairs, key=lambda name: -pairs[name].log_evidence)
+    if ranked:
+        state.fits |= state.search.back_substituted(pairs, known, ranked[1:4], ranked[0])
+        _rehear(state, state.search.crew)
 
 
 def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list[Judged], Judgement]:

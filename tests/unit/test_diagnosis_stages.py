@@ -13,7 +13,7 @@ from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import Noise
 from orchestrator.diagnosis.observation import Track
-from orchestrator.diagnosis.stages import hear_noise, run_search
+from orchestrator.diagnosis.stages import State, hear_noise, run_search, try_pairs
 
 Array = NDArray[np.float64]
 TIMES = np.arange(0.02, 3.0, 0.02)
@@ -78,6 +78,37 @@ class Scripted:
     def once_more(self, _: Any, fits: dict[str, Any], best: str) -> dict[str, Any]:
         self.again.append(best)
         return fits
+
+
+class Paired(Scripted):
+    """Pairs: the wrong one is ahead until all are raced anew."""
+
+    crew = None
+
+    def raced_anew(self, fits: dict[str, Any], known: Any, base: Any) -> dict[str, Any]:
+        assert {h.name for h in known} == set(fits), "every pair, and nothing but pairs"
+        return fits | {RIGHT: fit(20.0)}
+
+    def back_substituted(self, fits: dict[str, Any], known: Any, names: list[str], winner: str) -> dict[str, Any]:
+        assert (winner, names) == (RIGHT, [WRONG])
+        return fits
+
+
+WRONG, RIGHT = "damping + lag", "damping + step"
+
+
+def test_pairs_are_raced_anew_before_one_is_believed(monkeypatch: Any) -> None:
+    heard: list[Any] = []
+    monkeypatch.setattr(stages, "hear_noise", lambda _, __, it, **___: heard.append(it) or [])
+    monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=1e-6))
+    found = {name: (Hypothesis(name, (), ()), fit(objective)) for name, objective in ((WRONG, 30.0), (RIGHT, 35.0))}
+    monkeypatch.setattr(stages, "fit_seconds", lambda *_: found)
+    setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
+    hypotheses = [Hypothesis(EFFECT, (), ())]
+    state = State(setup, Paired(), fit(100.0), {NULL.name: fit(100.0), EFFECT: fit(60.0)}, hypotheses)  # type: ignore[arg-type]
+    try_pairs(state)
+    assert min(state.fits, key=lambda name: state.fits[name].objective) == RIGHT
+    assert [it.objective for it in heard] == [20.0], "the noise is judged by the best pair"
 
 
 def fit(objective: float) -> Any:
