@@ -45,7 +45,7 @@ def ask_holdouts(
         if fit is not None:
             null, fits[name] = exchanged(search, null, fit)
     if fits:
-        hear_noise(held, crew, next(iter(fits.values())))
+        hear_noise(held, crew, next(iter(fits.values())), best=True)
     fits = {n: renoised(held.landings, fit) for n, fit in {NULL.name: null, **fits}.items()}
     evidence = fits[NULL.name].log_evidence
     gains = {n: (fit.log_evidence - evidence, adequacy(fit, held.landings).p) for n, fit in fits.items() if n != NULL.name}
