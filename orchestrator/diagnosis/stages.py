@@ -22,13 +22,15 @@ from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.predict import Land
-from orchestrator.diagnosis.verdict import ADEQUATE, Judged, Judgement, credible, judge
+from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, credible, judge
 
 Array = NDArray[np.float64]
 GRID = 0.01  # s, of courses to look at
 RESTING = 0.006  # rad/s
 SETTLED = 0.15  # s after the last faster instant
 PAIRED_WITH = 2  # singles that second effects are tried beside
+WORTH_RACING = 2.0  # in ln evidence over any single: pairs that are raced
+OVERTAKES = 6.0  # in ln evidence over an adequate single: pairs that are kept; about what their prior asks for
 MISLED = 8.0  # of φ: a base fit that proves so far from its best has misled the effects that were judged from it
 FAR = 0.15  # s: a clock that far off is known to 50 ms, not 5
 CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
@@ -148,11 +150,16 @@ def _rehear(state: State, crew: Crew) -> None:
 
 
 def try_pairs(state: State) -> None:
-    """Second effects beside the best singles, where one alone is not adequate."""
+    """Second effects beside the best singles, where one alone is not adequate, or good enough to be named.
+
+    What a first effect leaves of a second may pass for noise that is larger or more coloured than it is: adequacy alone would not ask.
+    """
     singles = [n for n in _ranked(state) if n != NULL.name][:PAIRED_WITH]
     known = {h.name: h for h in state.hypotheses}
-    best = state.fits[singles[0]] if singles else state.base
-    if not singles or adequacy(best, state.setup.landings).p >= ADEQUATE:
+    if not singles:
+        return
+    best, null = state.fits[singles[0]], state.fits[NULL.name]
+    if best.log_evidence < null.log_evidence + BEATS and adequacy(best, state.setup.landings).p >= ADEQUATE:
         return
     seconds = list(state.hypotheses)
     for name in singles:
@@ -161,7 +168,18 @@ def try_pairs(state: State) -> None:
             if swapped_name not in state.fits:
                 state.fits[pair] = fit
                 state.hypotheses.append(hypothesis)
-    _race_pairs(state)
+    pairs = [name for name in state.fits if len(parts_of(name)) > 1]
+    if pairs and _ahead(state, pairs) > WORTH_RACING:
+        _race_pairs(state)
+    if _ahead(state, pairs) < OVERTAKES and adequacy(state.fits[singles[0]], state.setup.landings).p >= ADEQUATE:
+        state.fits = {name: fit for name, fit in state.fits.items() if name not in pairs}
+        state.hypotheses = [h for h in state.hypotheses if h.name not in pairs]
+
+
+def _ahead(state: State, pairs: Sequence[str]) -> float:
+    """The best pair's ln evidence over the best single's, or over nothing missing's."""
+    together = max((state.fits[name].log_evidence for name in pairs), default=-np.inf)
+    return together - max(fit.log_evidence for name, fit in state.fits.items() if name not in pairs)
 
 
 def _race_pairs(state: State) -> None:
@@ -174,9 +192,8 @@ def _race_pairs(state: State) -> None:
     changed = [name for name in pairs if raced[name] is not pairs[name]]
     pairs |= dict(zip(changed, state.search.refine_all([raced[name] for name in changed], "pairs"), strict=True))
     ranked = sorted(pairs, key=lambda name: -pairs[name].log_evidence)
-    if ranked:
-        state.fits |= state.search.back_substituted(pairs, known, ranked[1:4], ranked[0])
-        _rehear(state, state.search.crew)
+    state.fits |= state.search.back_substituted(pairs, known, ranked[1:4], ranked[0])
+    _rehear(state, state.search.crew)
 
 
 def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list[Judged], Judgement]:

@@ -1,7 +1,8 @@
 """From fits to a verdict: probabilities of the hypotheses, who is adequate, and when to abstain.
 
-Half of the prior belongs to nothing missing, the other half to the library in equal shares; pairs share a twentieth. The rules are those of
-docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing missing, and a held-out landing that gains.
+Half of the prior belongs to nothing missing, the other half to the library in equal shares; all its pairs share a twentieth. The rules
+are those of docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing missing, and a held-out
+landing that gains.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Judged:
 def probabilities(hypotheses: Sequence[Judged], singles: int) -> dict[str, float]:
     """Posterior of each; `singles` is the size of the library."""
     weights = []
-    pairs = max(sum(len(parts_of(h.name)) == 2 for h in hypotheses), 1)
+    pairs = max(singles * (singles - 1) // 2, 1)  # not only those that looked worth fitting
     for h in hypotheses:
         parts = len(parts_of(h.name))
         prior = 0.5 if parts == 0 else 0.5 * (1.0 - TOGETHER) / max(singles, 1) if parts == 1 else 0.5 * TOGETHER / pairs
@@ -75,7 +76,7 @@ class Judgement:
 
 
 def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
-    """hypotheses must hold nothing missing; pairs only where singles were inadequate."""
+    """hypotheses must hold nothing missing."""
     found = probabilities(hypotheses, singles)
     known = {h.name: h for h in hypotheses}
     null, named = known[NULL.name], credible(hypotheses, singles)
@@ -97,9 +98,7 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
             found,
             f"the best of the library, {best.name}, leaves more than noise{held}",
         )
-    if len(named) == 1 and standing:
+    if len(named) == 1 or (len(standing) == 1 and found[standing[0]] >= SURE):
         return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
-    if len(standing) == 1 and found[standing[0]] >= SURE:
-        return Judgement("effect", parts_of(standing[0]), found)
     names = tuple(dict.fromkeys(part for n in named for part in parts_of(n)))
     return Judgement("cannot_tell", names, found)
