@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,14 +10,19 @@ from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.effects import Effect
+from orchestrator.diagnosis.fit import fitted, refined
 from orchestrator.diagnosis.landing import Lander
+from orchestrator.diagnosis.problem import Landings, Model
 from sealed.energy import energy, scaled_to
-from sealed.scene import Scene, model_of
+from sealed.instruments import observation
+from sealed.scene import STOP, Scene, centred, model_of
 from sealed.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 Random = np.random.Generator
 LARGEST = 3.0  # prior standard deviations
+NEAR = 0.25  # of the λ asked for
+REFITS = 4  # sizes tried for it
 
 
 @dataclass(frozen=True)
@@ -28,26 +33,36 @@ class Hidden:
     z: tuple[tuple[float, ...], ...]
     energies: tuple[float, ...]
     energy: float
+    linear: tuple[float, ...] = ()
+    """What slopes at the true nuisances say of each."""
+
+
+At = Callable[[float], tuple[float, ...]]
 
 
 class Signatures:
-    """White changes of one scene's prediction, against one set of nuisance slopes."""
+    """White changes of one scene's prediction by effects, and what nuisances leave of them: by their slopes, and fitted anew."""
 
     def __init__(self, vehicle: Vehicle, scene: Scene, lander: Lander) -> None:
-        self.vehicle, self.scene, self.lander = vehicle, scene, lander
-        model = model_of(vehicle, scene, lander)
-        predicted = model.predict(scene.z)
+        self.vehicle, self.scene, self.lander = vehicle, centred(scene), lander
+        model = model_of(vehicle, self.scene, lander)
+        predicted = model.predict(self.scene.z)
         if predicted is None:
             raise ArithmeticError("the scene cannot be flown")
         self.predicted = predicted
-        self.slopes = model.whitened(model.slopes(scene.z, predicted), predicted)
+        self.derivatives = model.slopes(self.scene.z, predicted)
+        self.slopes = model.whitened(self.derivatives, predicted)
 
-    def signature(self, effects: Sequence[Effect], z: Sequence[Sequence[float]]) -> Array | None:
-        """White change by effects at a point; None where it cannot be flown."""
+    def flown(self, effects: Sequence[Effect], z: Sequence[Sequence[float]]) -> Array | None:
+        """The prediction with effects at a point; None where it cannot be flown."""
         coordinates = tuple(c for effect in effects for c in self.vehicle.coordinates(effect))
         fixed = {name: value for effect in effects for name, value in self.vehicle.fixed(effect).items()}
         model = model_of(self.vehicle, self.scene, self.lander, coordinates, fixed)
-        there = model.predict(np.concatenate([self.scene.z, *(np.array(part) for part in z)]))
+        return model.predict(np.concatenate([self.scene.z, *(np.array(part) for part in z)]))
+
+    def signature(self, effects: Sequence[Effect], z: Sequence[Sequence[float]]) -> Array | None:
+        """White change by effects at a point; None where it cannot be flown."""
+        there = self.flown(effects, z)
         return None if there is None else self.whitened(there)
 
     def whitened(self, prediction: Array) -> Array:
@@ -55,18 +70,51 @@ class Signatures:
         model = model_of(self.vehicle, self.scene, self.lander)
         return model.whitened((prediction - self.predicted)[:, None], self.predicted)[:, 0]
 
-    def columns(self, effect: Effect) -> list[Array]:
-        """White slopes by an effect's parameters where it is null, each by a tenth of its prior's standard deviation."""
-        count = len(effect.parameters)
-        points = [[0.1 if i == place else 0.0 for i in range(count)] for place in range(count)]
-        return [10.0 * column for z in points if (column := self.signature([effect], [z])) is not None]
-
     def energy(self, effects: Sequence[Effect], z: Sequence[Sequence[float]]) -> float | None:
         signature = self.signature(effects, z)
         return None if signature is None else energy(signature, self.slopes)
 
+    def left(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None = None) -> float | None:
+        """λ that stays when the nuisances, and an effect `beside` that is none of these, are fitted anew to what the effects do.
+
+        Twice φ at the minimum reached from the true nuisances, without noise, the prior centred on them. Contacts that change order let
+        nuisances explain more than their slopes say: 24 of friction at one pad (0.005 more) become 9.5, 332 of a step become 36.
+        """
+        there = self.flown(effects, z)
+        if there is None:
+            return None
+        own = tuple(self.vehicle.coordinates(beside)) if beside else ()
+        base = {**self.vehicle.base, **(self.vehicle.fixed(beside) if beside else {})}
+        landings = Landings([observation(self.vehicle, self.scene.sampling, there)], [base], [STOP])
+        model = Model(landings, (*self.scene.coordinates, *own), self.lander)
+        start = np.concatenate([self.scene.z, np.zeros(len(own))])
+        mine = range(len(self.scene.z), len(start))
+        slopes = np.column_stack([self.derivatives, model.slopes(start, self.predicted, mine)])
+        fit = fitted(model, start, slopes, self.predicted)
+        return None if fit is None else 2.0 * refined(model, fit).objective
+
+    def sized_by_what_is_left(self, effect: Effect, target: float, random: Random) -> Hidden | None:
+        """The effect in a random direction, so large that nuisances fitted anew leave λ; None where 3 prior sigmas do not reach it."""
+        at = self._along(effect, random)
+        found = scaled_to(target, lambda k: self.energy([effect], [at(k)]), LARGEST)
+        k = found[0] if found else np.inf
+        for _ in range(REFITS):
+            left = self.left([effect], [at(k)]) if k <= LARGEST else None
+            if left is None:
+                return None
+            if abs(left / target - 1.0) <= NEAR:
+                return Hidden((effect,), (at(k),), (left,), left, (self.energy([effect], [at(k)]) or 0.0,))
+            k *= float(np.clip(np.sqrt(target / max(left, 1e-9)), 0.4, 2.5))
+        return None
+
     def sized(self, effect: Effect, target: float, random: Random) -> Hidden | None:
-        """The effect in a random direction, as large as λ asks; None where 3 prior sigmas do not reach it."""
+        """The effect in a random direction, as large as λ by slopes asks; None where 3 prior sigmas do not reach it."""
+        at = self._along(effect, random)
+        found = scaled_to(target, lambda k: self.energy([effect], [at(k)]), LARGEST)
+        return Hidden((effect,), (at(found[0]),), (found[1],), found[1]) if found else None
+
+    def _along(self, effect: Effect, random: Random) -> At:
+        """A random direction: z of the effect's parameters by its length."""
         coordinates = self.vehicle.coordinates(effect)
         shape = [self._is_shape(effect, i) for i in range(len(coordinates))]
         direction = random.standard_normal(len(coordinates))
@@ -78,8 +126,7 @@ class Signatures:
             z = np.where(shape, direction, k * direction)
             return tuple(min(max(x, c.bounds[0]), c.bounds[1]) for x, c in zip(z.tolist(), coordinates, strict=True))
 
-        found = scaled_to(target, lambda k: self.energy([effect], [at(k)]), LARGEST)
-        return Hidden((effect,), (at(found[0]),), (found[1],), found[1]) if found else None
+        return at
 
     def _is_shape(self, effect: Effect, place: int) -> bool:
         """Whether a parameter alone changes nothing: it shapes what another one sizes."""

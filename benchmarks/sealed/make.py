@@ -6,7 +6,9 @@ import hashlib
 import json
 import secrets
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,6 @@ from orchestrator.diagnosis.effects import Effect
 from orchestrator.diagnosis.measured import write_measured
 from sealed import truth
 from sealed.commit import commit
-from sealed.energy import energy
 from sealed.hidden import Hidden, Signatures, parameters
 from sealed.instruments import clean_readings, noisy, public
 from sealed.kinds import NULLS, TWINS, Plan, plans
@@ -30,6 +31,7 @@ Random = np.random.Generator
 Landed = tuple[Array, dict[str, float]]
 DRAWS = 12  # effects tried for one case before the case is given up
 FIT, HOLDOUT = 0, 1
+FINE = {"tolerance": 3e-4, "longest_step": 0.02}  # of the twin, for λ: as a search flies where a fit is to stand
 MOVED = (0.5, 1.0)  # how far a landing's conditions are from the scenario's, in scene.MOVED
 
 
@@ -37,20 +39,41 @@ class UnmadeError(Exception):
     """A case that could not be made."""
 
 
-def make(out: Path, keys: Path, n: int, seed: int, kinds: tuple[str, ...] = (), told: Callable[[int], None] | None = None) -> None:
-    """The whole set; `keys` must lie outside `out`."""
+def make(
+    out: Path, keys: Path, n: int, seed: int, kinds: tuple[str, ...] = (), told: Callable[[int], None] | None = None, jobs: int = 1
+) -> None:
+    """The whole set, `jobs` cases at a time; `keys` must lie outside `out`."""
     if keys.resolve().is_relative_to(out.resolve()) or out.resolve().is_relative_to(keys.resolve()):
         raise ValueError(f"{keys}: keys beside the data are no secret; give a folder outside {out}")
     keys.mkdir(parents=True, exist_ok=True)
-    vehicle = Vehicle()
-    for plan in plans(n, seed, kinds):
-        path = keys / f"{plan.number:03}.json"
-        if not path.is_file():
-            folder = out / "cases" / f"{plan.number:03}"
-            path.write_text(json.dumps(made(vehicle, plan, seed, folder), indent=1) + "\n", "utf-8")
-        if told is not None:
-            told(plan.number + 1)
+    with ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_begin) as pool:
+        futures = [pool.submit(_make_one, plan, seed, out, keys) for plan in plans(n, seed, kinds)]
+        try:
+            for future in as_completed(futures):
+                number = future.result()
+                if told is not None:
+                    told(number + 1)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
     _write_manifest(out, keys, n)
+
+
+_vehicle: Vehicle | None = None
+
+
+def _begin() -> None:
+    global _vehicle
+    _vehicle = Vehicle()
+
+
+def _make_one(plan: Plan, seed: int, out: Path, keys: Path) -> int:
+    """The case's number, once its data and then its key are written."""
+    path = keys / f"{plan.number:03}.json"
+    if not path.is_file():
+        key = made(_vehicle or Vehicle(), plan, seed, out / "cases" / f"{plan.number:03}")
+        path.write_text(json.dumps(key, indent=1) + "\n", "utf-8")
+    return plan.number
 
 
 def made(vehicle: Vehicle, plan: Plan, seed: int, folder: Path) -> dict[str, Any]:
@@ -82,10 +105,10 @@ def scenes_of(vehicle: Vehicle, plan: Plan, place: Sequence[int]) -> list[Scene]
 
 
 def _hidden(vehicle: Vehicle, plan: Plan, scene: Scene, random: Random, skipped: list[dict[str, Any]]) -> tuple[Hidden, float | None]:
-    """What is hidden, and for twins how much of λ is left once the other of the pair may explain it."""
+    """What is hidden, and for twins how much of λ is left once the other of the pair may explain it, too."""
     if plan.kind in NULLS:
         return Hidden((), (), (), 0.0), None
-    lander = vehicle.lander()
+    lander = vehicle.lander(FINE)
     try:
         signatures = Signatures(vehicle, scene, lander)
         if plan.kind == "twin":
@@ -98,7 +121,10 @@ def _hidden(vehicle: Vehicle, plan: Plan, scene: Scene, random: Random, skipped:
         others = [it for it in library if it.port != one.port and it.name not in one.twins and one.name not in it.twins]
         second = _drawn(others, plan, signatures, random, skipped)
         effects, z = (*first.effects, *second.effects), (*first.z, *second.z)
-        return Hidden(effects, z, (*first.energies, *second.energies), signatures.energy(effects, z) or 0.0), None
+        both = signatures.left(effects, z)
+        if both is None:
+            raise UnmadeError(plan.kind)
+        return Hidden(effects, z, (*first.energies, *second.energies), both, (*first.linear, *second.linear)), None
     finally:
         lander.close()
 
@@ -111,7 +137,7 @@ def already_uncertain(vehicle: Vehicle, effect: Effect, scene: Scene) -> bool:
 
 def _drawn(library: list[Effect], plan: Plan, signatures: Signatures, random: Random, skipped: list[dict[str, Any]]) -> Hidden:
     for i in random.permutation(len(library))[:DRAWS]:
-        found = signatures.sized(library[i], plan.target, random)
+        found = signatures.sized_by_what_is_left(library[i], plan.target, random)
         if found is not None:
             return found
         skipped.append({"effect": library[i].name, "energy": plan.target})
@@ -122,14 +148,11 @@ def _twin(vehicle: Vehicle, plan: Plan, signatures: Signatures, random: Random, 
     pairs = [pair for pair in TWINS if all(name in vehicle.effects for name in pair)]
     for i in random.permutation(len(pairs)):
         mine, other = pairs[i] if random.random() < 0.5 else pairs[i][::-1]
-        found = signatures.sized(vehicle.effects[mine], plan.target, random)
+        found = signatures.sized_by_what_is_left(vehicle.effects[mine], plan.target, random)
         if found is None:
             skipped.append({"effect": mine, "energy": plan.target})
             continue
-        signature = signatures.signature(found.effects, found.z)
-        columns = signatures.columns(vehicle.effects[other])
-        left = energy(signature, np.column_stack([signatures.slopes, *columns])) if signature is not None else 0.0
-        return found, left
+        return found, signatures.left(found.effects, found.z, vehicle.effects[other]) or 0.0
     raise UnmadeError(plan.kind)
 
 
@@ -147,9 +170,10 @@ def _landed(vehicle: Vehicle, scene: Scene, plan: Plan, hidden: Hidden) -> Lande
 
 def _key(vehicle: Vehicle, plan: Plan, hidden: Hidden, scenes: list[Scene], landings: list[Landed]) -> dict[str, Any]:
     effects = [
-        {"name": effect.name, "port": effect.port, "energy": effect.energy, "fixed": dict(effect.fixed), "lambda": size, "z": list(z),
+        {"name": effect.name, "port": effect.port, "energy": effect.energy, "fixed": dict(effect.fixed),
+         "lambda": size, "lambda_by_slopes": linear, "z": list(z),
          "parameters": parameters(vehicle, effect, z), "prior": {it.name: it.prior.sigma for it in effect.parameters}}
-        for effect, z, size in zip(hidden.effects, hidden.z, hidden.energies, strict=True)
+        for effect, z, size, linear in zip(hidden.effects, hidden.z, hidden.energies, hidden.linear, strict=True)
     ]  # fmt: skip
     places = {
         name: {"origin_s": scene.sampling.origin, "nuisances": {c.name: float(x) for c, x in zip(scene.coordinates, scene.z, strict=True)},

@@ -49,6 +49,7 @@ def _parser() -> argparse.ArgumentParser:
     making.add_argument("--keys", type=Path, required=True, help="folder of the keys, outside the set")
     making.add_argument("--cases", type=int, default=100)
     making.add_argument("--seed", type=int, required=True, help="secret: it makes the same cases again")
+    making.add_argument("--jobs", type=int, default=2, help="cases at a time, one process each")
     making.add_argument("--kind", action="append", choices=list(SHARES), help="only these kinds, in turn")
     running = commands.add_parser("run", help="diagnose all cases")
     running.add_argument("--set", type=Path, required=True)
@@ -67,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _make(options: argparse.Namespace) -> int:
     with _bar("cases", options.cases) as told:
-        make(options.set, options.keys, options.cases, options.seed, tuple(options.kind or ()), lambda _: told())
+        make(options.set, options.keys, options.cases, options.seed, tuple(options.kind or ()), lambda _: told(), options.jobs)
     return 0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,13 @@ def drawn_scene(vehicle: Vehicle, random: Random, plan: Plan, gap: Array, moved:
     z[-1] = 0.0  # the clock's origin is in the sampling
     sampling = drawn_sampling(random, plan.colour, plan.misstated, vehicle.addresses.legs)
     return Scene(known, sampling, (*nuisances, *vehicle.tolerances()), np.concatenate([z, gap]))
+
+
+def centred(scene: Scene) -> Scene:
+    """The same landing with the true nuisances at z = 0: a prior that pulls to what they are."""
+    there = [c.mean + c.sigma * float(x) for c, x in zip(scene.coordinates, scene.z, strict=True)]
+    coordinates = tuple(replace(c, mean=p) for c, p in zip(scene.coordinates, there, strict=True))
+    return replace(scene, coordinates=coordinates, z=np.zeros(len(coordinates)))
 
 
 def model_of(
