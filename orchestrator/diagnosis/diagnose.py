@@ -26,9 +26,9 @@ from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
 from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, try_pairs
-from orchestrator.diagnosis.terms.find_term import find_term
+from orchestrator.diagnosis.terms.find_term import adopt, find_term, forsake
 from orchestrator.diagnosis.terms.found import Found, to_outcome
-from orchestrator.diagnosis.verdict import Judged, Judgement
+from orchestrator.diagnosis.verdict import Judged, Judgement, overtaken
 from orchestrator.errors import UserError
 from orchestrator.scenario.locate import scenario_folder
 
@@ -137,17 +137,20 @@ def _searched(
         raise _unflyable(request, setup) from None
     if crew.flown < request.budget:
         try_pairs(state)
-    holdout_fits: dict[str, Fit] = {}
-    gains: dict[str, tuple[float, float]] = {}
+    diagnosis = Diagnosis(outcome, setup, held, state, effects=effects)
     names = promising(state, 3 if crew.flown < request.budget else 1)
-    if held is not None and names:
-        try:
-            holdout_fits, gains = ask_holdouts(state, held, crew, request.seed, names, told)
-        except UnflyableError:
-            raise _unflyable(request, held) from None
-    verdicts, judgement = judged(state, gains)
-    diagnosis = Diagnosis(outcome, setup, held, state, holdout_fits, effects, judgement)
-    if judgement.verdict == "none_of_my_effects" and crew.flown < request.budget:
+    try:
+        if names and crew.flown < request.budget and _overtaken_from_outside(request, diagnosis, crew, names, told):
+            verdicts, judgement = judged(state, {})
+            why = f"{names[0]} would be named, but {diagnosis.outcome.term['words']}, which is not in the library, is more probable"
+            judgement = Judgement("none_of_my_effects", (), judgement.probabilities, why)
+        else:
+            gains = _asked(diagnosis, crew, request.seed, names, told)
+            verdicts, judgement = judged(state, gains)
+    except UnflyableError:
+        raise _unflyable(request, held or setup) from None
+    diagnosis.judgement = judgement
+    if judgement.verdict == "none_of_my_effects" and diagnosis.found is None and crew.flown < request.budget:
         _look_outside(request, diagnosis, crew, told)
     fill(diagnosis, verdicts, judgement)
     outcome.simulations = crew.flown
@@ -160,28 +163,70 @@ def _unflyable(request: Request, setup: Setup) -> UserError:
     return UserError(f"{request.scenario}: cannot be flown from the prior means of {', '.join(setup.names)}; check the priors")
 
 
+def _asked(diagnosis: Diagnosis, crew: Crew, seed: int, names: Sequence[str], told: Told | None) -> dict[str, tuple[float, float]]:
+    """What the held-out landings say of these: name -> (gain, adequacy); nothing without such landings. Keeps their fits."""
+    held, state = diagnosis.held, diagnosis.state
+    if held is None or state is None or not names:
+        return {}
+    fits, gains = ask_holdouts(state, held, crew, seed, names, told)
+    diagnosis.holdout_fits = {**diagnosis.holdout_fits, **fits}
+    return gains
+
+
+def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequence[str], told: Told | None) -> bool:
+    """Whether a law outside the library is more probable than the effects that would be named, and holds on the held-out landings.
+
+    Two effects at once can imitate much: a torque with the yaw angle came out as a pulse of attitude control and friction under one pad.
+    """
+    setup, state = diagnosis.setup, diagnosis.state
+    if setup is None or state is None:
+        return False
+    found = find_term(state, setup, crew, request.seed, told)
+    if found is None or not found.adequate:
+        return False
+    adopt(state, found)
+    state.fits = state.search.back_substituted(state.fits, state.hypotheses, names[:2], found.name)
+    forsake(state, found)
+    verdicts, judgement = judged(state, {})
+    best = max((one for one in verdicts if one.name in names), key=lambda one: judgement.probabilities[one.name])
+    if not overtaken(best, len(setup.hypotheses), found.log_evidence, len(found.regressed)):
+        return False
+    return _put_forward(request, diagnosis, crew, found, told)
+
+
 def _look_outside(request: Request, diagnosis: Diagnosis, crew: Crew, told: Told | None) -> None:
-    """Generic terms, where no effect of the library will do; the held-out landings are asked about the one found."""
-    setup, held, state = diagnosis.setup, diagnosis.held, diagnosis.state
+    """Generic terms, where no effect of the library will do."""
+    setup, state = diagnosis.setup, diagnosis.state
     if setup is None or state is None:
         return
     found = find_term(state, setup, crew, request.seed, told)
     if found is None:
         return
-    closure = None
     if not found.adequate:
         diagnosis.outcome.warnings.append(f"nearest of the generic terms: {found.words}; it leaves more than noise, and is not put forward")
         return
+    if not _put_forward(request, diagnosis, crew, found, told):
+        diagnosis.outcome.warnings.append(f"{found.words}: worse than nothing missing on the held-out landing, and not put forward")
+
+
+def _put_forward(request: Request, diagnosis: Diagnosis, crew: Crew, found: Found, told: Told | None) -> bool:
+    """The term into the outcome, unless the held-out landings, where there are any, do not gain by it."""
+    held, state = diagnosis.held, diagnosis.state
+    if state is None:
+        return False
+    closure = None
+    adopt(state, found)
+    gains = _asked(diagnosis, crew, request.seed, [found.name], told)
+    if gains and gains[found.name][0] <= 0.0:
+        forsake(state, found)
+        return False
     if held is not None:
-        fits, gains = ask_holdouts(state, held, crew, request.seed, [found.name], told)
-        diagnosis.holdout_fits = {**diagnosis.holdout_fits, **fits}
+        fits = diagnosis.holdout_fits
         before, after, count = fits[NULL.name].chi2, fits[found.name].chi2, held.landings.size
         closure = 1.0 - max(after - count, 0.0) / (before - count) if before > count else None
-        if gains[found.name][0] <= 0.0:
-            diagnosis.outcome.warnings.append(f"{found.words}: worse than nothing missing on the held-out landing, and not put forward")
-            return
     diagnosis.found = found
     diagnosis.outcome.term = to_outcome(found, closure)
+    return True
 
 
 def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement) -> None:

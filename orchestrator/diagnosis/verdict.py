@@ -21,6 +21,7 @@ BEATS = 5.0  # ln evidence above nothing missing
 ADEQUATE = 0.01  # p-value of a residual
 LOST = 1e-3  # p-value below which nothing missing is refused by itself
 TOGETHER = 0.05  # prior of any two effects at once
+OUTSIDE = 0.05  # as much for any one law that the library does not have
 
 
 @dataclass(frozen=True)
@@ -43,14 +44,20 @@ class Judged:
 
 def probabilities(hypotheses: Sequence[Judged], singles: int) -> dict[str, float]:
     """Posterior of each; `singles` is the size of the library."""
-    weights = []
-    pairs = max(singles * (singles - 1) // 2, 1)  # not only those that looked worth fitting
-    for h in hypotheses:
-        parts = len(parts_of(h.name))
-        prior = 0.5 if parts == 0 else 0.5 * (1.0 - TOGETHER) / max(singles, 1) if parts == 1 else 0.5 * TOGETHER / pairs
-        weights.append(h.log_evidence + log(prior))
+    weights = [h.log_evidence + log(prior_of(h.name, singles)) for h in hypotheses]
     shifted = np.exp(np.array(weights) - max(weights))
     return {h.name: float(w) for h, w in zip(hypotheses, shifted / shifted.sum(), strict=True)}
+
+
+def prior_of(name: str, singles: int) -> float:
+    """Of nothing missing, of an effect, of one of all pairs, not only those that looked worth fitting."""
+    parts, pairs = len(parts_of(name)), max(singles * (singles - 1) // 2, 1)
+    return 0.5 if parts == 0 else 0.5 * (1.0 - TOGETHER) / max(singles, 1) if parts == 1 else 0.5 * TOGETHER / pairs
+
+
+def overtaken(best: Judged, singles: int, log_evidence: float, terms: int) -> bool:
+    """Whether a law outside the library, one of so many, is more probable than the best of the library. Evidence over nothing missing."""
+    return log_evidence + log(0.5 * OUTSIDE / max(terms, 1)) > best.log_evidence + log(prior_of(best.name, singles))
 
 
 def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:

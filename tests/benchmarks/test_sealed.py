@@ -15,7 +15,7 @@ from sealed import diagnoses, report, scoring, sealing, targets
 from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
 from sealed.kinds import SHARES, counts, plans
-from sealed.make import made, make, scenes_of
+from sealed.make import FINE, made, make, scenes_of
 from sealed.vehicle import ZUPP, Vehicle
 from sealed.wilson import wilson
 
@@ -30,7 +30,7 @@ def vehicle() -> Vehicle:
 
 @pytest.fixture(scope="module")
 def lander(vehicle: Vehicle) -> Iterator[TwinLander]:
-    lander = vehicle.lander()
+    lander = vehicle.lander(FINE)
     yield lander
     lander.close()
 
@@ -83,6 +83,26 @@ def test_signature_energy_equals_the_dense_formula(vehicle: Vehicle, lander: Twi
     dense = signature @ np.linalg.solve(covariance, signature)
     assert dense > 1.0
     assert signatures.energy([vehicle.effects["step_-Y"]], [[0.5]]) == pytest.approx(dense, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_nuisances_fitted_anew_leave_what_slopes_say_of_a_linear_effect_and_less_of_another(vehicle: Vehicle, lander: TwinLander) -> None:
+    """A gyro's cross axis changes the readings in proportion, and no contact: fitting anew must agree with the closed form (5 %: kinks
+    within reach of the nuisances, and the 0.3 of φ that a fit leaves unflown). A step under one pad changes the order of contacts;
+    fitting can only lower φ.
+    """
+    plan = plans(1, 9, ("single 25",))[0]
+    signatures = Signatures(vehicle, scenes_of(vehicle, plan, [9, 1, 0])[0], lander)
+    gyro, step = [vehicle.effects["gyro_cross_axis"]], [vehicle.effects["step_-Y"]]
+    z = [[1.0] * len(gyro[0].parameters)]
+    by_slopes, left = signatures.energy(gyro, z), signatures.left(gyro, z)
+    assert by_slopes is not None
+    assert left == pytest.approx(by_slopes, rel=0.05)
+    assert (signatures.left(gyro, z, gyro[0]) or 0.0) < 0.05 * by_slopes
+    far, fitted = signatures.energy(step, [[0.2]]), signatures.left(step, [[0.2]])
+    assert far is not None
+    assert fitted is not None
+    assert 0.0 < fitted < far
 
 
 def test_nuisances_that_explain_everything_leave_no_energy() -> None:

@@ -1,9 +1,10 @@
 """The rules of a verdict, on hypotheses whose fits are made up."""
 
+import numpy as np
 import pytest
 
 from orchestrator.diagnosis.hypothesis import NULL
-from orchestrator.diagnosis.verdict import Judged, judge, probabilities
+from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, judge, overtaken, probabilities
 
 LIBRARY = 40
 FINE, POOR = 0.4, 1e-6
@@ -78,3 +79,14 @@ def test_half_of_the_prior_is_nothing_missing_and_the_library_shares_the_rest() 
     assert found[NULL.name] == pytest.approx(0.5, abs=0.02)
     assert found["e0"] == pytest.approx(0.5 / LIBRARY, rel=0.06)
     assert sum(found.values()) == pytest.approx(1.0)
+
+
+def test_a_law_outside_the_library_must_lead_a_single_by_what_its_prior_asks_and_may_trail_a_pair() -> None:
+    single, pair = Judged("damping", 20.0, 0.5), Judged("damping + slope", 20.0, 0.5)
+    asked = np.log((1.0 - TOGETHER) / 47 * 100 / OUTSIDE)
+    assert asked == pytest.approx(3.70, abs=0.01)
+    assert not overtaken(single, 47, 20.0 + asked - 0.01, 100)
+    assert overtaken(single, 47, 20.0 + asked + 0.01, 100)
+    behind = np.log(47 * 46 / 2 / 100)  # 1081 pairs and 100 laws share as much
+    assert overtaken(pair, 47, 20.0 - behind + 0.01, 100)
+    assert not overtaken(pair, 47, 20.0 - behind - 0.01, 100)

@@ -27,8 +27,6 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     """The best generic term that is not a refused effect of the library; None where none beats nothing missing.
 
     Not where the search goes through the master: the dictionary is in the twin's names, and several hundred landings long.
-
-    Its fit and hypothesis are added to the state, so that the held-out landings can be asked about it like about any effect.
     """
     if setup.why_slow:
         return None
@@ -44,10 +42,19 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     if winner is None or regression.fits[winner].log_evidence - null < BEATS:
         return None
     found = told_of(regression, winner, set(offered), null, seed)
-    found = with_second(regression, found, offered, null)
+    return with_second(regression, found, offered, null)
+
+
+def adopt(state: State, found: Found) -> None:
+    """Its fit and hypothesis among the state's, so that the held-out landings can be asked about it like about any effect."""
     state.fits[found.name] = found.fit
     state.hypotheses.append(found.hypothesis)
-    return found
+
+
+def forsake(state: State, found: Found) -> None:
+    """Out of the state again."""
+    del state.fits[found.name]
+    state.hypotheses.remove(found.hypothesis)
 
 
 def told_of(regression: Regression, winner: str, offered: set[str], null: float, seed: int) -> Found:
@@ -99,4 +106,4 @@ def _paired(regression: Regression, first: Found, pair: Hypothesis, fit: Fit, nu
     return replace(whole, coefficient=sizes[0], second=second)
 
 
-__all__ = ["find_term", "told_of", "with_second"]
+__all__ = ["adopt", "find_term", "forsake", "told_of", "with_second"]
