@@ -104,10 +104,10 @@ class Search:
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from a rung before it stops to."""
-        here = point_of(base)
+        here = self.on_the_way(base)
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
-            return self._probed(hypotheses, here, "hypotheses")
+            return self.probed(hypotheses, here, "hypotheses")
         fits = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
         best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
         if fits and explains(fits[0][1].chi2, self.landings.size):
@@ -116,7 +116,14 @@ class Search:
         others = self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks))
         return best | {n: fit for n, fit in others.items() if n not in best or fit.objective < best[n].objective}
 
-    def _probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
+    def on_the_way(self, fit: Fit) -> Point:
+        """A fit's nuisances without its effect, flown as landings on the way are: a slope must not be the difference of two ways to fly."""
+        count = len(self.nuisances)
+        z = fit.z[:count]
+        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
+        return Point(z, fit.predicted if predicted is None else predicted, fit.slopes[:, :count], np.inf)
+
+    def probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
         """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""
         tasks = [Probe(self.landings, (*self.nuisances, *h.coordinates), here, tuple(h.scaled_starts())) for h in hypotheses]
         return self._best_of([h.name for h in hypotheses], self.run(stage, tasks))
@@ -142,7 +149,7 @@ class Search:
         """One hypothesis raced from the first horizon on, or else fitted from the base fit, and refined; None where it cannot be flown."""
         found = [fit for _, fit in self._raced([hypothesis], 1)] if len(self.path) > 1 else []
         if not found:
-            at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
+            at_base = self._at(self.landings, hypothesis, self.on_the_way(base), np.zeros(len(hypothesis.coordinates)))
             found = [fit for fit in self.run(stage, [at_base]) if fit is not None]
         return self.refine_all(found[:1], stage)[0] if found else None
 
@@ -182,10 +189,8 @@ class Search:
 
         A wrong effect that fits in part draws the nuisances out of the minimum in which they hid the right one.
         """
-        point = self._beside(fits[winner])
-        if point is None:
-            return fits
-        better = _better(self._probed([h for h in hypotheses if h.name != winner], point, "once more"), fits)
+        point = self.on_the_way(fits[winner])
+        better = _better(self.probed([h for h in hypotheses if h.name != winner], point, "once more"), fits)
         return self.refine_best(fits | better) if better else fits
 
     def _beside(self, fit: Fit) -> Point | None:

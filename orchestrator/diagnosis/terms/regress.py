@@ -1,9 +1,9 @@
 """Regression through the simulator: which generic terms the residual follows once the nuisances have had their share, and their real fits.
 
-Every term's slopes are flown at the base fit, those within reach of the best at the nuisances of the best library effect too, where the
-nuisances have absorbed less. What slopes promise picks a few terms, these get fits of their own, and the slopes at the winner's nuisances
-judge the others once more. A base fit that explains nothing sits in a false minimum, where slopes mislead and a wrench on the body seems to
-explain most: there the few climb from the first touch on, as the library's effects do.
+Every term's slopes are flown at the base fit and at the nuisances of the best library effect, where the nuisances have absorbed less.
+Those that gain most at either are probed as the library's effects are: held where they would stand out, and let go. The slopes at the
+winner's nuisances judge the others once more. A base fit that explains nothing sits in a false minimum, where slopes mislead and a wrench
+on the body seems to explain most: there the few climb from the first touch on, as the library's effects do.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.tasks.fits import FitAt, Point
-from orchestrator.diagnosis.tasks.predict import Predict, Slopes
+from orchestrator.diagnosis.tasks.predict import Slopes
 from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
 from orchestrator.diagnosis.terms.term import Term
 
 Array = NDArray[np.float64]
-FITTED = 8  # terms with fits of their own at first
-LATER = 3  # and after the last view
-SECOND_VIEW, LAST_VIEW = 40, 20  # terms whose slopes are flown there
+PROBED, CLIMBING = 24, 8  # terms with fits of their own at first; that climb where the base fit explains nothing
+LATER = 3  # fitted after the last view, beside the forms at the winner's own port
+LAST_VIEW, ALIKE = 20, 12  # terms whose slopes are flown there, forms at the winner's port among them
 REACH = 30.0  # of ln evidence: who is further behind the best fit is not refined
 STALE = 6.0  # of ln evidence: a promise that the last view did not confirm makes no rival of the best fit
 AHEAD = 3.0  # of ln evidence, by which an unfitted term must promise more than the best fit has
-REFINED = 2
+REFINED = 5
 STEPS = 4
 
 
@@ -44,6 +44,8 @@ class Regression:
     views: list[View] = field(default_factory=list)
     promised: dict[str, float] = field(default_factory=dict)
     """ln evidence by the last view that has the term."""
+    gains: dict[str, float] = field(default_factory=dict)
+    """The most that it gains at any view over the nuisances alone there."""
     estimates: dict[str, tuple[int, float]] = field(default_factory=dict)
     """View of it, z of the coefficient there."""
     fits: dict[str, Fit] = field(default_factory=dict)
@@ -64,6 +66,10 @@ class Regression:
         """By what is promised, best first."""
         return sorted(self.promised if names is None else names, key=lambda n: -self.promised[n])
 
+    def gaining(self, names: Sequence[str]) -> list[str]:
+        """By what they gain, best first. Nuisances that fit worse at one view say nothing of a term."""
+        return sorted(names, key=lambda n: -self.gains[n])
+
     def look_from(self, view: View, names: Sequence[str]) -> Linear:
         """Slopes of these terms at a view, and what they promise."""
         search = self.search
@@ -75,6 +81,7 @@ class Regression:
         found = linear(whitened(search.landings, search.nuisances, view))
         for n, value, estimate in zip(names, found.evidence.tolist(), found.estimate.tolist(), strict=True):
             self.promised[n] = value
+            self.gains[n] = max(self.gains.get(n, -np.inf), value - found.null)
             self.estimates[n] = (len(self.views) - 1, estimate)
         return found
 
@@ -110,14 +117,15 @@ class Regression:
 def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Sequence[str]) -> str | None:
     """All of it; the best of the terms `offered`, None where none of them can be flown."""
     search = regression.search
-    regression.look_from(View(base.z, base.predicted, base.slopes), list(regression.hypotheses))
-    view = view_of(search, better) if better is not None else None
-    if view is not None:
-        regression.look_from(view, regression.ranked()[:SECOND_VIEW])
+    here = search.on_the_way(base)
+    regression.look_from(View(here.z, here.predicted, here.slopes), list(regression.hypotheses))
+    if better is not None:
+        there = search.on_the_way(better)
+        regression.look_from(View(there.z, there.predicted, there.slopes), list(regression.hypotheses))
     first = chosen(regression, offered)
-    regression.fit(first)
+    regression.keep(search.probed([regression.hypotheses[n] for n in first], here, "terms"))
     if not explains(base.chi2, search.landings.size):
-        regression.keep(search.fit_all([regression.hypotheses[n] for n in first], base))
+        regression.keep(search.fit_all([regression.hypotheses[n] for n in first[:CLIMBING]], base))
     if regression.best(offered) is None:
         return None
     _refine(regression, offered)
@@ -128,31 +136,25 @@ def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Se
 
 
 def chosen(regression: Regression, offered: Sequence[str]) -> list[str]:
-    """FITTED terms: the best of every port, since a trapped base fit promises to the wrong one, then the best of the others."""
-    ranked = regression.ranked(offered)
+    """PROBED terms: the best of every port, since a trapped base fit promises to the wrong one, then the best of the others."""
+    ranked = regression.gaining(offered)
     best = {regression.terms[n].port: n for n in reversed(ranked)}
     first = [n for n in ranked if n in best.values()]
-    return (first + [n for n in ranked if n not in first])[:FITTED]
-
-
-def view_of(search: Search, fit: Fit) -> View | None:
-    """A fit's nuisances without its effect, with its slopes."""
-    count = len(search.nuisances)
-    z = fit.z[:count]
-    (predicted,) = search.crew.run([Predict(search.landings, search.nuisances, (z,))])[0]
-    return None if predicted is None else View(z, predicted, fit.slopes[:, :count])
+    return (first + [n for n in ranked if n not in first])[:PROBED]
 
 
 def _look_again(regression: Regression, winner: str, offered: Sequence[str]) -> bool:
-    """From the winner's nuisances; whoever promises clearly more than it has gets a fit."""
-    view = view_of(regression.search, regression.fits[winner])
-    if view is None:
-        return False
-    names = [winner, *(n for n in regression.ranked() if n != winner)][:LAST_VIEW]
+    """From the winner's nuisances: the other forms at its port are fitted from there, and whoever promises clearly more than it has."""
+    point = regression.search.on_the_way(regression.fits[winner])
+    view = View(point.z, point.predicted, point.slopes)
+    forms = [n for n in regression.gaining(offered) if n != winner and regression.terms[n].port == regression.terms[winner].port][:ALIKE]
+    names = list(dict.fromkeys([winner, *forms, *regression.ranked()]))[:LAST_VIEW]
     regression.look_from(view, names)
     ahead = regression.fits[winner].log_evidence - AHEAD
-    late = [n for n in regression.ranked(offered) if n in names and n not in regression.fits and regression.promised[n] > ahead][:LATER]
-    regression.fit(late)
+    alike = [n for n in forms if regression.promised[n] > ahead - REACH]
+    ranked = [n for n in regression.ranked(offered) if n in names and n not in regression.fits and n not in alike]
+    late = [n for n in ranked if regression.promised[n] > ahead][:LATER]
+    regression.fit([*alike, *late])
     return regression.best(offered) != winner
 
 
