@@ -142,7 +142,8 @@ def _searched(
     try:
         if names and crew.flown < request.budget and _overtaken_from_outside(request, diagnosis, crew, names, told):
             verdicts, judgement = judged(state, {})
-            why = f"{names[0]} would be named, but {diagnosis.outcome.term['words']}, which is not in the library, is more probable"
+            outcome.term["instead_of"] = names[0]
+            why = f"{names[0]} would be named, but {outcome.term['words']}, which is not in the library, is more probable"
             judgement = Judgement("none_of_my_effects", (), judgement.probabilities, why)
         else:
             gains = _asked(diagnosis, crew, request.seed, names, told)

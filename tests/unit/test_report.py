@@ -247,3 +247,6 @@ def test_pairs_are_spoken_of_where_some_were_tried() -> None:
     assert caution(found) == "No effect of the library is consistent with the readings."
     found.candidates.append(replace(found.candidates[0], name="soil_damping + swirl"))
     assert caution(found) == "No effect of the library, and no pair of them, is consistent with the readings."
+    found.term = {"instead_of": "rcs_pulse + friction"}
+    said = "The readings are consistent with rcs pulse and friction, too. A law that is not in the library is more probable."
+    assert caution(found) == said

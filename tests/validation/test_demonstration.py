@@ -40,7 +40,7 @@ def diagnoses(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Fu
 def diagnosed(folder: Path) -> Diagnosis:
     done = orchestrator(
         "diagnose", "apollo11_zupp", "--measured", folder / "fit", "--holdout", folder / "holdout", "--out", folder / "out",
-        "--verdict-only", "--workers", 1, "--budget", BUDGET, limit=1800.0,
+        "--verdict-only", "--workers", 1, "--budget", BUDGET, limit=3600.0,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return dict(json.loads((folder / "out" / "diagnosis.json").read_text("utf-8")))

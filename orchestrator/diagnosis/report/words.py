@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-from orchestrator.diagnosis.hypothesis import parts_of
+from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import NamedEffect, Outcome
 from orchestrator.diagnosis.report.numbers import chance, number, percent, shown_unit, spelt, with_sigma
 
@@ -38,6 +38,9 @@ def caution(outcome: Outcome) -> str:
     if outcome.verdict in ("effect", "effects"):
         found = "; ".join(_found(effect) for effect in outcome.effects) or "this effect"
         return f"The readings are consistent with {found}. A law that is not in the library and acts alike would look the same."
+    instead = listed([inside(title_of(outcome, name)) for name in parts_of(outcome.term.get("instead_of") or NULL.name)])
+    if outcome.verdict == "none_of_my_effects" and instead:
+        return f"The readings are consistent with {instead}, too. A law that is not in the library is more probable."
     pairs = ", and no pair of them," if any(len(parts_of(c.name)) > 1 for c in outcome.candidates) else ""
     return {
         "nothing_missing": "The readings are consistent with the scenario as it stands. What a landing does not excite cannot show in it.",
