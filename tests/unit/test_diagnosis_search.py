@@ -129,6 +129,26 @@ def _phi(model: Model, z: Array) -> float:
     return 0.5 * float(r @ r + z @ z)
 
 
+class Grained(Ringing):
+    """Flown coarsely it reads 0.02 more, as an integrator's tolerance would have it."""
+
+    def column(self, name: str, values: Mapping[str, float], t: Array) -> Array:
+        return super().column(name, values, t) + (0.02 if values["tolerance"] > 1e-3 else 0.0)
+
+
+def test_hypotheses_start_from_a_landing_flown_as_their_own_differences_are() -> None:
+    """Slopes that mix a coarse landing with a fine one see the integrator: here 0.02 over a step of 0.1."""
+    base = {**RINGING, "tolerance": 3e-3}
+    times = np.arange(0.02, 2.0, 0.02)
+    landings = one_landing(tracks(Grained(), base, ("x", "y"), times, 0.01, 2), (), base)
+    search = Search(landings, NUISANCES, (), Crew(Grained))
+    fit = search.base()
+    point = search.on_the_way(fit)
+    coarse = Model(landings, NUISANCES, Grained()).predict(fit.z)
+    assert np.array_equal(point.predicted, coarse)
+    assert np.abs(fit.predicted - point.predicted).max() == pytest.approx(0.02)  # the fit stands on the fine one
+
+
 def test_the_base_values_of_the_formula_are_complete() -> None:
     assert set(RINGING) >= set(SIZES)
     assert Ringing().column("x", RINGING, np.zeros(1))[0] == 1.0
