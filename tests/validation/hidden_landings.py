@@ -13,7 +13,7 @@ from sealed import truth
 from sealed.hidden import Hidden, Signatures
 from sealed.instruments import clean_readings, noisy, public
 from sealed.kinds import Plan
-from sealed.make import scenes_of
+from sealed.make import FINE, scenes_of
 from sealed.outside import LAWS
 from sealed.vehicle import Vehicle
 
@@ -38,7 +38,7 @@ def write(vehicle: Vehicle, case: Case, folder: Path) -> None:
     random = np.random.default_rng([case.seed, 1])
     hidden = Hidden((), (), (), 0.0)
     if case.effect:
-        lander = vehicle.lander()
+        lander = vehicle.lander(FINE)
         effect = vehicle.effects.get(case.effect) or LAWS[case.effect]
         sized = Signatures(vehicle, scenes[0], lander).sized(effect, case.energy, random)
         lander.close()
