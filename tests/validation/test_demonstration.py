@@ -26,11 +26,14 @@ Diagnosis = dict[str, Any]
 
 
 @pytest.fixture(scope="module")
-def diagnoses(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Future[Diagnosis]]]:
-    """Of all cases, one process each: a search is serial in parts."""
+def diagnoses(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Future[Diagnosis]]]:
+    """Of the cases asked for, one process each: a search is serial in parts."""
     vehicle, begun = Vehicle(), {}
+    asked = {item.callspec.params["what"] for item in request.session.items if item.path == request.path}  # type: ignore[attr-defined]
     with ThreadPoolExecutor(cpu_count() or 1) as pool:
         for what, case in CASES.items():
+            if what not in asked:
+                continue
             folder = tmp_path_factory.mktemp(case.effect or "nothing")
             write(vehicle, case, folder)
             begun[what] = pool.submit(diagnosed, folder)
@@ -47,14 +50,14 @@ def diagnosed(folder: Path) -> Diagnosis:
 
 
 MISSED = {
-    "one of two that look alike": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.992: χ² 859.9 of 920 "
-    "against 871.0, adequacy 1 both; without noise the filter is 4.5 in ln evidence better",
+    "one of two that look alike": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.998: χ² 899.8 of 920 "
+    "against 913.5, adequacy 1 both; without noise the filter is 4.5 in ln evidence better",
 }
-"""Cases that a search is known to get wrong, with what it said."""
+"""Cases that a search is known to get wrong, with what it said; not in CI, ten minutes of a core each."""
 
 
 def cases() -> list[Any]:
-    known = {what: [pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
+    known = {what: [pytest.mark.long, pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
     return [pytest.param(what, marks=known.get(what, [])) for what in CASES]
 
 
