@@ -77,8 +77,9 @@ class Signatures:
     def left(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None = None) -> float | None:
         """λ that stays when the nuisances, and an effect `beside` that is none of these, are fitted anew to what the effects do.
 
-        Twice φ at the minimum reached from the true nuisances, without noise, the prior centred on them. Contacts that change order let
-        nuisances explain more than their slopes say: 24 of friction at one pad (0.005 more) become 9.5, 332 of a step become 36.
+        Twice φ at the minimum reached from the true nuisances, without noise, the prior centred on them; what `beside` costs by its own
+        prior counts. Where contacts change order, slopes say something else, mostly more: 24 of friction at one pad (0.005 more) become
+        9.5, 332 of a step become 36.
         """
         there = self.flown(effects, z)
         if there is None:

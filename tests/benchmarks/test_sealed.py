@@ -86,10 +86,10 @@ def test_signature_energy_equals_the_dense_formula(vehicle: Vehicle, lander: Twi
 
 
 @pytest.mark.slow
-def test_nuisances_fitted_anew_leave_what_slopes_say_of_a_linear_effect_and_less_of_another(vehicle: Vehicle, lander: TwinLander) -> None:
+def test_nuisances_fitted_anew_leave_what_slopes_say_of_a_linear_effect_and_lower_any(vehicle: Vehicle, lander: TwinLander) -> None:
     """A gyro's cross axis changes the readings in proportion, and no contact: fitting anew must agree with the closed form (5 %: kinks
     within reach of the nuisances, and the 0.3 of φ that a fit leaves unflown). A step under one pad changes the order of contacts;
-    fitting can only lower φ.
+    slopes bound nothing there, but what nuisances leave is less than the whole signature.
     """
     plan = plans(1, 9, ("single 25",))[0]
     signatures = Signatures(vehicle, scenes_of(vehicle, plan, [9, 1, 0])[0], lander)
@@ -98,11 +98,13 @@ def test_nuisances_fitted_anew_leave_what_slopes_say_of_a_linear_effect_and_less
     by_slopes, left = signatures.energy(gyro, z), signatures.left(gyro, z)
     assert by_slopes is not None
     assert left == pytest.approx(by_slopes, rel=0.05)
-    assert (signatures.left(gyro, z, gyro[0]) or 0.0) < 0.05 * by_slopes
-    far, fitted = signatures.energy(step, [[0.2]]), signatures.left(step, [[0.2]])
-    assert far is not None
+    own = signatures.left(gyro, z, gyro[0])
+    assert own is not None
+    assert 2.0 < own <= 3.0  # what its own prior asks of the effect: z'z = 3, a little less with the nuisances' help
+    whole, fitted = signatures.signature(step, [[0.2]]), signatures.left(step, [[0.2]])
+    assert whole is not None
     assert fitted is not None
-    assert 0.0 < fitted < far
+    assert 0.0 < fitted < 0.8 * float(whole @ whole)
 
 
 def test_nuisances_that_explain_everything_leave_no_energy() -> None:
