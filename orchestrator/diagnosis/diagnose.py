@@ -183,7 +183,7 @@ def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, 
     if setup is None or state is None:
         return False
     found = find_term(state, setup, crew, request.seed, told)
-    if found is None or not found.adequate:
+    if found is None or not found.adequate or found.second is not None:  # two laws at once have no such prior
         return False
     adopt(state, found)
     state.fits = state.search.back_substituted(state.fits, state.hypotheses, names[:2], found.name)

@@ -45,6 +45,7 @@ def test_the_more_probable_of_both_is_said(
     fit = SimpleNamespace(log_evidence=term, chi2=100.0)
     tried = dict.fromkeys(range(100))
     found = SimpleNamespace(name=TERM.name, fit=fit, hypothesis=TERM, adequate=adequate, log_evidence=term, regressed=tried)
+    found.second = None
     monkeypatch.setattr(diagnose, "find_term", lambda *_: found if term is not None else None)
     monkeypatch.setattr(diagnose, "judged", judged)
     monkeypatch.setattr(diagnose, "to_outcome", lambda found, closure: {"words": found.name, "closure": closure})
