@@ -104,7 +104,7 @@ class Search:
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from a rung before it stops to."""
-        here = self.on_the_way(base)
+        here = self.on_the_way(base) or point_of(base)
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self.probed(hypotheses, here, "hypotheses")
@@ -116,12 +116,9 @@ class Search:
         others = self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks))
         return best | {n: fit for n, fit in others.items() if n not in best or fit.objective < best[n].objective}
 
-    def on_the_way(self, fit: Fit) -> Point:
+    def on_the_way(self, fit: Fit) -> Point | None:
         """A fit's nuisances without its effect, flown as landings on the way are: a slope must not be the difference of two ways to fly."""
-        count = len(self.nuisances)
-        z = fit.z[:count]
-        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
-        return Point(z, fit.predicted if predicted is None else predicted, fit.slopes[:, :count], np.inf)
+        return self._beside(self.landings, fit)
 
     def probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
         """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""
@@ -149,7 +146,7 @@ class Search:
         """One hypothesis raced from the first horizon on, or else fitted from the base fit, and refined; None where it cannot be flown."""
         found = [fit for _, fit in self._raced([hypothesis], 1)] if len(self.path) > 1 else []
         if not found:
-            at_base = self._at(self.landings, hypothesis, self.on_the_way(base), np.zeros(len(hypothesis.coordinates)))
+            at_base = self._at(self.landings, hypothesis, self.on_the_way(base) or point_of(base), np.zeros(len(hypothesis.coordinates)))
             found = [fit for fit in self.run(stage, [at_base]) if fit is not None]
         return self.refine_all(found[:1], stage)[0] if found else None
 
@@ -174,7 +171,7 @@ class Search:
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
-        point = self._beside(fits[winner])
+        point = self._beside(self.fine, fits[winner])
         if point is None:
             return fits
         known = {h.name: h for h in (*hypotheses, NULL)}
@@ -190,14 +187,16 @@ class Search:
         A wrong effect that fits in part draws the nuisances out of the minimum in which they hid the right one.
         """
         point = self.on_the_way(fits[winner])
+        if point is None:
+            return fits
         better = _better(self.probed([h for h in hypotheses if h.name != winner], point, "once more"), fits)
         return self.refine_best(fits | better) if better else fits
 
-    def _beside(self, fit: Fit) -> Point | None:
-        """The fit's nuisances without its effect."""
+    def _beside(self, landings: Landings, fit: Fit) -> Point | None:
+        """The fit's nuisances without its effect; None where these landings cannot be flown there."""
         count = len(self.nuisances)
         z = fit.z[:count]
-        (predicted,) = self.crew.run([Predict(self.fine, self.nuisances, (z,))])[0]
+        (predicted,) = self.crew.run([Predict(landings, self.nuisances, (z,))])[0]
         return None if predicted is None else Point(z, predicted, fit.slopes[:, :count], np.inf)
 
     def refine_all(self, fits: Sequence[Fit], stage: str) -> list[Fit]:

@@ -145,6 +145,7 @@ def test_hypotheses_start_from_a_landing_flown_as_their_own_differences_are() ->
     fit = search.base()
     point = search.on_the_way(fit)
     coarse = Model(landings, NUISANCES, Grained()).predict(fit.z)
+    assert point is not None
     assert np.array_equal(point.predicted, coarse)
     assert np.abs(fit.predicted - point.predicted).max() == pytest.approx(0.02)  # the fit stands on the fine one
 

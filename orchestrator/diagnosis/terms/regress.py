@@ -18,7 +18,7 @@ from orchestrator.diagnosis.climb import explains
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.search import Search
-from orchestrator.diagnosis.tasks.fits import FitAt, Point
+from orchestrator.diagnosis.tasks.fits import FitAt, Point, point_of
 from orchestrator.diagnosis.tasks.predict import Slopes
 from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
 from orchestrator.diagnosis.terms.term import Term
@@ -117,11 +117,11 @@ class Regression:
 def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Sequence[str]) -> str | None:
     """All of it; the best of the terms `offered`, None where none of them can be flown."""
     search = regression.search
-    here = search.on_the_way(base)
-    regression.look_from(View(here.z, here.predicted, here.slopes), list(regression.hypotheses))
-    if better is not None:
-        there = search.on_the_way(better)
-        regression.look_from(View(there.z, there.predicted, there.slopes), list(regression.hypotheses))
+    here = search.on_the_way(base) or point_of(base)
+    there = search.on_the_way(better) if better is not None else None
+    for point in (here, there):
+        if point is not None:
+            regression.look_from(View(point.z, point.predicted, point.slopes), list(regression.hypotheses))
     first = chosen(regression, offered)
     regression.keep(search.probed([regression.hypotheses[n] for n in first], here, "terms"))
     if not explains(base.chi2, search.landings.size):
@@ -146,6 +146,8 @@ def chosen(regression: Regression, offered: Sequence[str]) -> list[str]:
 def _look_again(regression: Regression, winner: str, offered: Sequence[str]) -> bool:
     """From the winner's nuisances: the other forms at its port are fitted from there, and whoever promises clearly more than it has."""
     point = regression.search.on_the_way(regression.fits[winner])
+    if point is None:
+        return False
     view = View(point.z, point.predicted, point.slopes)
     forms = [n for n in regression.gaining(offered) if n != winner and regression.terms[n].port == regression.terms[winner].port][:ALIKE]
     names = list(dict.fromkeys([winner, *forms, *regression.ranked()]))[:LAST_VIEW]
