@@ -219,6 +219,7 @@ class _Counting:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.lander, self.flown = vehicle.lander(), 0
+        self.varies = self.lander.varies
 
     def land(self, *arguments: Any) -> Any:
         self.flown += 1

@@ -131,6 +131,7 @@ class Counting:
 
     def __init__(self, lander: Lander) -> None:
         self.lander, self.flown = lander, 0
+        self.varies = lander.varies
 
     def land(self, *arguments: Any) -> Any:
         self.flown += 1

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import log_ndtr
 
 from orchestrator.diagnosis.coordinates import Coordinate, clipped
-from orchestrator.diagnosis.problem import FELT, HERE, Model
+from orchestrator.diagnosis.problem import FELT, HERE, Model, Place
 
 Array = NDArray[np.float64]
 REACH = 2.5  # of one step in any z
@@ -120,13 +120,16 @@ def fitted(
     steps: int = 6,
     renew: Sequence[int] = (),
     renewals: int = 1,
+    beside: Place | None = None,
 ) -> Fit | None:
     """The model fitted from z with slopes made there or near; None where nothing there can be flown.
 
     renew     columns to make anew where the slopes prove poor, at most `renewals` times
+    beside    where all is flown beside; the start, without
     """
     z = clipped(model.coordinates, z)
-    predicted = model.predict(z) if predicted is None else predicted
+    beside = model.place(z) if beside is None else beside
+    predicted = model.predict(z, beside=beside) if predicted is None or model.lander.varies else predicted
     if predicted is None:
         return None
     slopes, residual = slopes.copy(), model.residual(predicted)
@@ -136,7 +139,7 @@ def fitted(
         promised = objective(residual, z, temper) - objective(residual - jacobian @ step, z + step, temper)
         if promised < ENOUGH:
             break
-        made = _made(model, z, predicted, residual, slopes, step, temper, promised)
+        made = _made(model, beside, z, predicted, residual, slopes, step, temper, promised)
         gained = 0.0
         if made is not None:
             gained = objective(residual, z, temper) - objective(made[2], made[0], temper)
@@ -150,16 +153,20 @@ def fitted(
                 continue
             renewals -= 1
             slopes[:, list(renew)] = model.slopes(z, predicted, renew, slopes)
+            beside = model.place(z)
+            again = model.predict(z, beside=beside) if model.lander.varies else None
+            if again is not None:
+                predicted, residual = again, model.residual(again)
     return seen_from(model, z, predicted, slopes)
 
 
 def _made(
-    model: Model, z: Array, predicted: Array, before: Array, slopes: Array, step: Array, temper: float, promised: float
+    model: Model, beside: Place, z: Array, predicted: Array, before: Array, slopes: Array, step: Array, temper: float, promised: float
 ) -> tuple[Array, Array, Array] | None:
     """The step, or a part of it, that lowers φ: point, prediction, residual. What was flown teaches the slopes; before: the residual."""
     now = objective(before, z, temper)
     for _ in range(TRIES if promised > CHANCE else 1):
-        there = model.predict(z + step)
+        there = model.predict(z + step, beside=beside)
         if there is not None:
             residual = model.residual(there)
             if float(np.linalg.norm(residual - before)) > FELT:  # a smaller change is mostly the integrator's
@@ -176,10 +183,16 @@ def refined(model: Model, fit: Fit, steps: int = 4) -> Fit:
         before = fit.objective
         slopes = model.slopes(fit.z, fit.predicted, like=fit.slopes, felt=HERE)
         better = fitted(model, fit.z, slopes, fit.predicted, steps=steps)
-        fit = better if better is not None else fit
+        fit = settled(model, better) if better is not None else fit
         if before - fit.objective < GAIN:
             break
     return fit
+
+
+def settled(model: Model, fit: Fit) -> Fit:
+    """The fit by a landing on its own, beside which others may then be flown."""
+    predicted = model.predict(fit.z, beside=model.place(fit.z)) if model.lander.varies else None
+    return fit if predicted is None else seen_from(model, fit.z, predicted, fit.slopes)
 
 
 def objective(residual: Array, z: Array, temper: float = 1.0) -> float:

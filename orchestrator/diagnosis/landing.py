@@ -5,7 +5,7 @@ A search asks for a thousand landings, so nothing here is built twice: the insta
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -28,8 +28,20 @@ SPIN = tuple(f"body.angular_acceleration[{i}]" for i in (1, 2, 3))
 SENSOR = "sensor."
 FLOWN = 2  # parts of an interval of the grid in which the twin is flown where the sensor behind it does something
 PARTS = 2  # of each of these, for the sensor
-HEIGHT = "position_start[1]"
+ARRAY = "position_start["
+HEIGHT = f"{ARRAY}1]"
+VARIATION = "variation"
+NOMINALS = 6  # kept in the unit's memory at most, of about 7 MB each
 ALOFT = 10.0  # m: from where the height of the first contact is found
+
+
+@dataclass(frozen=True)
+class Nominal:
+    """A landing that the unit keeps under a number."""
+
+    place: int
+    rows: Array
+    last: Array
 
 
 @dataclass(frozen=True)
@@ -44,8 +56,21 @@ class Course:
 class Lander(Protocol):
     """What the search flies. Values by the names of the twin's variables; those of the rate sensor with `sensor.` before them."""
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
-        """The landing over the grid (s, from 0); None where these values cannot be flown to the end."""
+    varies: bool
+    """Whether a landing can be flown beside another, by its steps: sooner, and so that the two differ by their values alone."""
+
+    def land(
+        self,
+        values: Mapping[str, float],
+        grid: Array,
+        columns: Sequence[str],
+        final: Sequence[str],
+        beside: Mapping[str, float] | None = None,
+    ) -> Course | None:
+        """The landing over the grid (s, from 0); None where these values cannot be flown to the end.
+
+        beside: values of another landing over this grid, a nominal one; given where the lander `varies`.
+        """
 
     def close(self) -> None: ...
 
@@ -60,28 +85,62 @@ class TwinLander:
         self.sensor = Fmi2Unit("sensor", sensor, read_interface(sensor))
         self.bound: tuple[tuple[str, ...], tuple[str, ...]] | None = None
         self.starts = {name: number_of(v.start) for name, v in self.unit.interface.variables.items()}
+        self.varies = VARIATION in self.unit.interface.variables
+        self.nominals: dict[Hashable, Nominal] = {}
         legs = [name for name in self.unit.interface.variables if name.startswith("soil") and name.endswith(".gap")]
         self.gaps = tuple(legs)
         self._bind_sensor()
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+    def land(
+        self,
+        values: Mapping[str, float],
+        grid: Array,
+        columns: Sequence[str],
+        final: Sequence[str],
+        beside: Mapping[str, float] | None = None,
+    ) -> Course | None:
         wanted = tuple(dict.fromkeys([*RATES, *SPIN, *columns]))
         self._bind(wanted, tuple(final))
-        all_values = {**self.base, **values}
-        own = {name: value for name, value in all_values.items() if not name.startswith(SENSOR)}
-        sensor = {n[len(SENSOR) :]: v for n, v in all_values.items() if n.startswith(SENSOR)}
-        neutral = all(number_of(self.sensor.interface.variables[name].start) == value for name, value in sensor.items())
-        flown = grid if neutral else subdivided(grid, FLOWN)
+        own, sensor = self._parted(values)
+        nominal, others = self._parted(beside) if beside is not None else (None, {})
+        neutral = self._neutral(sensor)
+        flown = grid if neutral and self._neutral(others) else subdivided(grid, FLOWN)
         try:
-            self._touch_down(own, float(grid[-1]))
-            rows = self._fly(flown)
+            rows, last = self._flown(own, flown) if nominal is None else self._flown_beside(nominal, own, flown)
         except OrchestratorError:
             return None
         course = {name: rows[:, i] for i, name in enumerate(wanted)}
         course |= {f"telemetry.{axis}": course[f"rates.{axis}"] for axis in AXES} if neutral else self._sensed(flown, course, sensor)
-        course = course if neutral else {name: column[::FLOWN] for name, column in course.items()}
-        last = self.outputs[len(wanted) + len(self.gaps) :].copy()
+        course = course if flown is grid else {name: column[::FLOWN] for name, column in course.items()}
         return Course(grid, course, dict(zip(final, last.tolist(), strict=True)))
+
+    def _parted(self, values: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+        """All values of the twin's, and of the sensor's by its own names."""
+        every = {**self.base, **values}
+        own = {name: value for name, value in every.items() if not name.startswith(SENSOR)}
+        return own, {n[len(SENSOR) :]: v for n, v in every.items() if n.startswith(SENSOR)}
+
+    def _neutral(self, sensor: Mapping[str, float]) -> bool:
+        return all(number_of(self.sensor.interface.variables[name].start) == value for name, value in sensor.items())
+
+    def _flown(self, own: Mapping[str, float], grid: Array) -> tuple[Array, Array]:
+        """The columns that are bound at the grid's instants, and the final values."""
+        self._touch_down(own, float(grid[-1]))
+        rows = self._fly(grid)
+        return rows, self.outputs[rows.shape[1] + len(self.gaps) :].copy()
+
+    def _flown_beside(self, nominal: Mapping[str, float], own: Mapping[str, float], grid: Array) -> tuple[Array, Array]:
+        """As `_flown`, by the steps of the nominal landing, which is flown where the unit does not keep it yet."""
+        key = (self.bound, grid.tobytes(), tuple(sorted(nominal.items())))
+        kept = self.nominals.pop(key, None)
+        if kept is None:
+            place = len(self.nominals) + 1 if len(self.nominals) < NOMINALS else self.nominals.pop(next(iter(self.nominals))).place
+            try:
+                kept = Nominal(place, *self._flown({**nominal, VARIATION: place}, grid))
+            except OrchestratorError:
+                return self._flown(own, grid)
+        self.nominals[key] = kept  # the last one used is the last to be forgotten
+        return (kept.rows, kept.last) if own == nominal else self._flown({**own, VARIATION: -kept.place}, grid)
 
     def close(self) -> None:
         self.unit.close()
@@ -101,13 +160,10 @@ class TwinLander:
         start[HEIGHT] = ALOFT
         first = len(self.bound[0]) if self.bound else 0
         gaps = slice(first, first + len(self.gaps))
-        for _ in range(2):
-            self.unit.set_up(0.0, stop, start)
-            self.unit.exchange()
-            gap = float(self.outputs[gaps].min())
-            if abs(gap) < 1e-9:
-                break
-            start[HEIGHT] = float(start[HEIGHT]) - gap
+        self.unit.set_up(0.0, stop, start)
+        self.unit.exchange()
+        start[HEIGHT] = ALOFT - float(self.outputs[gaps].min())
+        self.unit.change({name: value for name, value in start.items() if name.startswith(ARRAY)})
         if self.unit.complaint:
             raise StepError(self.unit.complaint)
         self.unit.begin()

@@ -42,7 +42,16 @@ class MasterLander:
         self.units = LoadedUnits()
         self.base = self._drawn(())
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+    varies = False
+
+    def land(
+        self,
+        values: Mapping[str, float],
+        grid: Array,
+        columns: Sequence[str],
+        final: Sequence[str],
+        beside: Mapping[str, float] | None = None,
+    ) -> Course | None:
         """The landing at the master's own instants up to the grid's end; None where it cannot be flown."""
         try:
             return self._landed(values, float(grid[-1]), columns, final)

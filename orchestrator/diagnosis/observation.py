@@ -25,6 +25,7 @@ SEEN = (CLOCK, "time.")
 """Begin of what belongs to the data's clocks and not to a unit."""
 FILL = 0.02  # s: the search's own grid between the samples
 CLOSE = 1e-3  # s: samples closer than this share a point of the grid
+NEAR = 3e-3  # s
 SHARPEST = 1e-6  # SI: of an end at zero
 EDGE = 0.05  # of an interval's width, of one open to one side the end it has: how sharply its ends are meant
 
@@ -122,6 +123,12 @@ class Observation:
     def late(self, track: Track, values: Mapping[str, float]) -> float:
         """s by which the track's time tags run after first contact."""
         return self.shift + values.get(ORIGIN, 0.0) + values.get(CLOCK + track.series, 0.0)
+
+    def dated_alike(self, values: Mapping[str, float], others: Mapping[str, float]) -> bool:
+        """Whether samples so dated may be read off a course whose grid meets them as dated by the others: so near to a point of the grid a
+        corner of a rate that lies in the interval is felt with the square of the distance, at NEAR by a thirtieth of the noise.
+        """
+        return all(abs(self.late(t, values) - self.late(t, others)) < NEAR for t in self._dated)
 
     def predicted(self, course: Course, values: Mapping[str, float]) -> Array:
         """The numbers that this course would have left, in their own units; intervals give their final value."""

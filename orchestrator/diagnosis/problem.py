@@ -19,6 +19,8 @@ from orchestrator.diagnosis.landing import Course, Lander
 from orchestrator.diagnosis.observation import Observation, of_units
 
 Array = NDArray[np.float64]
+Place = tuple[dict[str, float], ...]
+"""Values of each landing."""
 ABOUT = (3.0, np.inf)
 """Standard deviations over all rows by which a difference is to be felt, at least and at most: the slope on the whole, for long steps from
 far off. What the integrator leaves to chance is a twentieth of the least."""
@@ -61,17 +63,22 @@ class Model:
         self.landings, self.coordinates, self.lander, self.horizon = landings, tuple(coordinates), lander, horizon
         self.weights = np.concatenate([o.weights(horizon) for o in landings.observations])
 
-    def predict(self, z: Array, before: tuple[Array, Array] | None = None) -> Array | None:
+    def place(self, z: Array) -> Place:
+        """Where a point's landings are, for others to be flown beside."""
+        return tuple(self.values(z, k) for k in range(len(self.landings.observations)))
+
+    def predict(self, z: Array, before: tuple[Array, Array] | None = None, beside: Place | None = None) -> Array | None:
         """What all landings would have left; None where one of them cannot be flown.
 
         before: a point and its prediction; landings that no changed coordinate touches are taken from there.
+        beside: landings by whose steps these are flown, where the lander can
         """
         rows = []
         for k, part in enumerate(self.landings.parts):
             if before is not None and not self._touched(k, z, before[0]):
                 rows.append(before[1][part])
                 continue
-            row = self._landed(k, z)
+            row = self._landed(k, z, beside)
             if row is None:
                 return None
             rows.append(row)
@@ -89,7 +96,7 @@ class Model:
     def slope(self, i: int, z: Array, predicted: Array, first: float, felt: tuple[float, float] = ABOUT) -> Array:
         """Derivative of the prediction by z_i, by a difference felt as asked, or of z = WIDEST.
 
-        first: the difference to try first.
+        predicted: at z, flown beside itself where the lander can;  first: the difference to try first
         """
         low, high = self.coordinates[i].bounds
         step, large = first, np.inf
@@ -112,7 +119,7 @@ class Model:
     def _difference(self, i: int, z: Array, predicted: Array, step: float) -> Array | None:
         moved = z.copy()
         moved[i] += step
-        there = self.predict(moved, (z, predicted))
+        there = self.predict(moved, (z, predicted), self.place(z))
         return None if there is None else (there - predicted) / step
 
     def slopes(
@@ -122,6 +129,8 @@ class Model:
 
         like: (n, coordinates) slopes from somewhere near, which tell how large a difference will be felt.
         """
+        own = self.predict(z, beside=self.place(z)) if self.lander.varies else None
+        predicted = predicted if own is None else own
         chosen = range(len(self.coordinates)) if which is None else which
         first = [c.step for c in self.coordinates]
         if like is not None:
@@ -138,21 +147,25 @@ class Model:
         moved = np.flatnonzero(z != before)
         return any(self.coordinates[i].landing in (SHARED, landing) for i in moved)
 
-    def course(self, k: int, z: Array, further: float = 0.0) -> Course | None:
+    def course(self, k: int, z: Array, further: float = 0.0, beside: Place | None = None) -> Course | None:
         """Landing k flown to `further` s past the horizon; None where it cannot be."""
-        observation = self.landings.observations[k]
+        observation, base = self.landings.observations[k], self.landings.bases[k]
         values = self.values(z, k)
-        grid = observation.grid(self.landings.stop[k], values, self.horizon + further)
-        course = self.lander.land({**self.landings.bases[k], **of_units(values)}, grid, observation.columns, observation.final)
+        nominal = beside[k] if beside is not None and self.lander.varies and observation.dated_alike(values, beside[k]) else None
+        grid = observation.grid(self.landings.stop[k], values if nominal is None else nominal, self.horizon + further)
+        asked = {**base, **of_units(values)}, grid, observation.columns, observation.final
+        course = self.lander.land(*asked) if nominal is None else self.lander.land(*asked, {**base, **of_units(nominal)})
         return course if course is not None and all(np.isfinite(c).all() for c in course.columns.values()) else None
 
-    def _landed(self, k: int, z: Array) -> Array | None:
-        course = self.course(k, z)
+    def _landed(self, k: int, z: Array, beside: Place | None) -> Array | None:
+        course = self.course(k, z, beside=beside)
         return None if course is None else self.landings.observations[k].predicted(course, self.values(z, k))
 
 
 class Nobody:
     """A lander for arithmetic that flies nothing."""
+
+    varies = False
 
     def land(self, *_: object) -> None:
         return None

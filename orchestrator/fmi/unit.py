@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from time import perf_counter
 from typing import Any, ClassVar
@@ -111,6 +112,10 @@ class FmuUnit(ABC):
         self._make(self._start_calls(values))
         self._enter_initialization(start, stop)
 
+    def change(self, values: Mapping[str, Value]) -> None:
+        """Other start values during initialisation; of an array all that differ from the model description's."""
+        self._make(self._start_calls(values))
+
     def exchange(self) -> None:
         FmuUnit.starting = self.name
         self._send()
@@ -212,9 +217,10 @@ class FmuUnit(ABC):
             if in_place(group, fmi_type):
                 calls.append(access.call([v for _, v in group], pointer(vector, group[0][0]), len(group)))
             else:
-                blocks.append(Block(access, fmi_type, group, self._arrays(), vector))
+                blocks.append(Block(access, fmi_type, group, self._arrays, vector))
         return calls, blocks
 
+    @cached_property
     def _arrays(self) -> dict[int, list[Variable]]:
         """Reference -> the elements it stands for, in order."""
         found: dict[int, dict[int, Variable]] = {}
@@ -229,7 +235,7 @@ class FmuUnit(ABC):
     def _start_calls(self, values: Mapping[str, Value]) -> list[Call]:
         """One call for each variable or whole array that is given a start value."""
         calls: list[Call] = []
-        arrays = self._arrays() if values else {}
+        arrays = self._arrays if values else {}
         for variable in {v.reference: v for v in self._variables(list(values))}.values():
             fmi_type, elements = self._types[variable.type], arrays[variable.reference]
             array = (fmi_type.c_type * len(elements))()

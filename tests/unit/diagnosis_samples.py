@@ -18,7 +18,11 @@ STOP = 2.0
 class Formula:
     """A lander whose landing is a formula."""
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+    varies = False
+
+    def land(
+        self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str], beside: object = None
+    ) -> Course | None:
         course = {name: self.column(name, values, grid) for name in columns}
         return Course(grid, course, {name: self.last(name, values) for name in final})
 
@@ -81,7 +85,11 @@ class LoggedRinging(Ringing):
     def __init__(self, log: Path, most: int) -> None:
         self.log, self.most = log, most
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+    varies = False
+
+    def land(
+        self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str], beside: object = None
+    ) -> Course | None:
         if self.log.exists() and self.log.stat().st_size >= self.most:
             raise KeyboardInterrupt
         with self.log.open("ab") as file:

@@ -75,7 +75,11 @@ def test_a_library_without_effects_leaves_the_base_fit_alone(missing: Mapping[st
 class Refused(Ringing):
     """A lander that lands nothing."""
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course | None:
+    varies = False
+
+    def land(
+        self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str], beside: object = None
+    ) -> Course | None:
         return None
 
 

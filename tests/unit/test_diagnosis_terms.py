@@ -42,7 +42,11 @@ def shape(name: str, t: Array) -> Array:
 class LinearLander:
     """y = n sin 2t + Σ c/sigma shape: every term's signature in proportion to its coefficient."""
 
-    def land(self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str]) -> Course:
+    varies = False
+
+    def land(
+        self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str], beside: object = None
+    ) -> Course:
         y = values["n"] * np.sin(2.0 * grid)
         for name in (*FREQUENCIES, TIMES_DEPTH):
             term = TERMS[name]

@@ -28,7 +28,11 @@ DEPTH = Sensor("depth at rest", ("soil1.penetration",), 0.002, "m")
 class Lines:
     """Pitch takes up offset + (first + second) t, roll third t; the second alone shows in the strut's load; late does nothing alone."""
 
-    def land(self, values: Mapping[str, float], grid: Any, columns: Sequence[str], final: Sequence[str]) -> Course:
+    varies = False
+
+    def land(
+        self, values: Mapping[str, float], grid: Any, columns: Sequence[str], final: Sequence[str], beside: object = None
+    ) -> Course:
         v = {"offset": 0.0, "first": 0.0, "second": 0.0, "third": 0.0, "late": 0.0, **values}
         known = {
             PITCH: v["offset"] + (v["first"] + v["second"]) * grid,

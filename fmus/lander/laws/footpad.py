@@ -26,10 +26,10 @@ from .vectors import (
     identity,
     outer,
     plus,
-    product,
-    skew,
+    skew_times,
     sub,
     times,
+    times_skew,
 )
 
 Array = NDArray[np.float64]
@@ -75,6 +75,10 @@ class PadTangents(NamedTuple):
     c_rr: Matrix
 
 
+NOTHING = identity(0.0)
+NO_TANGENTS = PadTangents(NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING)
+
+
 @jit
 def lever(pad: Footpad, attitude: Matrix, i: int) -> Vector:
     """From the ball joint to point i (0 is the centre), m, L. The pad's own x axis points up."""
@@ -113,12 +117,11 @@ def slide_at(surface: Surface, memory: Array, i: int, place: Vector, depth: floa
     return axpy(share, tangential(normal, moved), so_far)
 
 
-@jit
-def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> tuple[Wrench, PadTangents]:
-    """Force and torque of the soil on the pad, and their tangents. memory: (5, COLUMNS)."""
+@jit(inline=True)
+def wrench_and_tangents(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> tuple[Wrench, PadTangents]:
+    """What `pad_wrench` gives."""
     force, torque = ZERO, ZERO
-    zero = identity(0.0)
-    t = PadTangents(zero, zero, zero, zero, zero, zero, zero, zero)
+    t = NO_TANGENTS
     for i in range(POINTS):
         arm = lever(pad, motion.attitude, i)
         place = add(motion.position, arm)
@@ -145,24 +148,37 @@ def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, me
             term = tangent_term(soil.effects.tangent_term, depth, slip, slide, normal, plane)
             f, k_i, c_i = add(f, term.force), plus(k_i, term.stiffness), plus(c_i, term.damping)
         force, torque = add(force, f), add(torque, cross(arm, f))
-        t = with_point(t, k_i, c_i, skew(arm))
+        t = with_point(t, k_i, c_i, arm)
     return Wrench(force, torque), t
 
 
 @jit(inline=True)
-def with_point(t: PadTangents, k: Matrix, c: Matrix, arm: Matrix) -> PadTangents:
-    """Tangents with one point's stiffness and damping at its lever [arm x] added."""
-    k_arm, c_arm = times(-1.0, product(k, arm)), times(-1.0, product(c, arm))
+def with_point(t: PadTangents, k: Matrix, c: Matrix, arm: Vector) -> PadTangents:
+    """Tangents with one point's stiffness and damping at its lever added."""
+    k_arm, c_arm = times(-1.0, times_skew(k, arm)), times(-1.0, times_skew(c, arm))
     return PadTangents(
         plus(t.k_xx, k),
         plus(t.k_xr, k_arm),
-        plus(t.k_rx, product(arm, k)),
-        plus(t.k_rr, product(arm, k_arm)),
+        plus(t.k_rx, skew_times(arm, k)),
+        plus(t.k_rr, skew_times(arm, k_arm)),
         plus(t.c_xx, c),
         plus(t.c_xr, c_arm),
-        plus(t.c_rx, product(arm, c)),
-        plus(t.c_rr, product(arm, c_arm)),
+        plus(t.c_rx, skew_times(arm, c)),
+        plus(t.c_rr, skew_times(arm, c_arm)),
     )
+
+
+@jit
+def pad_wrench(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> tuple[Wrench, PadTangents]:
+    """Force and torque of the soil on the pad, and their tangents. memory: (5, COLUMNS)."""
+    return wrench_and_tangents(soil, surface, pad, motion, memory)
+
+
+@jit
+def pad_wrench_alone(soil: Soil, surface: Surface, pad: Footpad, motion: PadMotion, memory: Array) -> Wrench:
+    """The wrench of `pad_wrench`: the compiler leaves out what only the tangents need."""
+    wrench, _ = wrench_and_tangents(soil, surface, pad, motion, memory)
+    return wrench
 
 
 @jit

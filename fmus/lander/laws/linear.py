@@ -36,9 +36,10 @@ def solve_many(a: Array, b: Array) -> bool:
                 for j in range(m):
                     b[i, j] -= factor * b[k, j]
     for k in range(n - 1, -1, -1):
-        for c in range(m):
-            for j in range(k + 1, n):
+        for j in range(k + 1, n):
+            for c in range(m):
                 b[k, c] -= a[k, j] * b[j, c]
+        for c in range(m):
             b[k, c] /= a[k, k]
     return True
 

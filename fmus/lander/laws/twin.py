@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import quaternion, vector
+from .blocks import put_vector, quaternion, vector
 from .compiled import jit
-from .footpad import POINTS, Footpad, PadMotion, PadTangents, Wrench, lever, pad_power, pad_wrench
+from .footpad import NO_TANGENTS, POINTS, Footpad, PadMotion, PadTangents, Wrench, lever, pad_power, pad_wrench, pad_wrench_alone
 from .leg import Crush, Leg, Shape, shape
 from .leg_dynamics import Motion, motion_of_shape, tangents
 from .leg_inertia import Base, accelerated, axial_mass, base_coupling, lateral_mass, times_diagonal
@@ -176,22 +176,20 @@ def of_row(rows: Array, i: int, j: int) -> Vector:
     return (rows[i, j], rows[i, j + 1], rows[i, j + 2])
 
 
+class LegMoved(NamedTuple):
+    """One leg's motion at trial accelerations."""
+
+    pull: Vector  # R p'', m/s2, L
+    spin_up: Vector  # of the pad, rad/s2, L
+    acceleration: Vector  # p'', B
+    position: Vector  # p, m, B
+    velocity: Vector
+    pad: PadMotion
+
+
 @jit(inline=True)
-def leg_trial(
-    leg: Leg,
-    soil: Soil,
-    surface: Surface,
-    pad: Footpad,
-    body: BodyAt,
-    explicit: Explicit,
-    start: Quaternion,
-    pull: Vector,
-    spin_up: Vector,
-    crush: Crush,
-    memory: Array,
-    h: float,
-) -> LegAt:
-    """A leg with its soil at trial accelerations (R p'' and of the pad, L): what is missing in its equations."""
+def leg_moved(body: BodyAt, explicit: Explicit, start: Quaternion, pull: Vector, spin_up: Vector, h: float) -> LegMoved:
+    """Ball joint and pad at the end of a stage of h (s); start: the pad's attitude at the step's start."""
     r = body.turned
     acceleration = apply_transposed(r, pull)
     v = axpy(h, acceleration, explicit.velocity)
@@ -200,22 +198,29 @@ def leg_trial(
     attitude = rotation(normalise(multiply(from_rotation_vector(axpy(h, w, explicit.turn)), start)))
     carried = add(cross(body.rate, p), v)
     motion = PadMotion(add(body.position, apply(r, p)), attitude, add(body.velocity, apply(r, carried)), w)
-    wrench, soft = pad_wrench(soil, surface, pad, motion, memory)
+    return LegMoved(pull, spin_up, acceleration, p, v, motion)
+
+
+@jit(inline=True)
+def leg_answer(leg: Leg, body: BodyAt, moved: LegMoved, crush: Crush, wrench: Wrench, soft: PadTangents) -> LegAt:
+    """A leg under its soil's wrench: what is missing in its equations. soft: the soil's tangents, kept beside."""
+    r, p, v = body.turned, moved.position, moved.velocity
+    attitude, w = moved.pad.attitude, moved.pad.rate
     at = shape(leg, p, v)
     ball = ball_torque(leg, body.base, at, apply_transposed(r, w))
     own = apply_transposed(r, wrench.force)
     law = motion_of_shape(leg, body.base, at, p, v, own, ball, crush)
-    missing = sub(law.acceleration, acceleration)
+    missing = sub(law.acceleration, moved.acceleration)
     m_e, m_n = axial_mass(leg), lateral_mass(leg, at)
     along = dot(at.axis, missing)
     residual = apply(r, add(scale(m_n, missing), scale((m_e - m_n) * along, at.axis)))
     own_rate = apply_transposed(attitude, w)
-    spin = apply_transposed(attitude, spin_up)
+    spin = apply_transposed(attitude, moved.spin_up)
     inertial = add(times_diagonal(leg.pad_inertia, spin), cross(own_rate, times_diagonal(leg.pad_inertia, own_rate)))
     twist = sub(add(wrench.torque, apply(r, ball)), apply(attitude, inertial))
     nodes = accelerated(leg, at, law.nodes, scale(-1.0, missing))
     force, torque = mount_wrench(leg, body.base, p, at, nodes, own, ball)
-    return LegAt(at, law, motion, soft, wrench, ball, p, residual, twist, force, torque)
+    return LegAt(at, law, moved.pad, soft, wrench, ball, p, residual, twist, force, torque)
 
 
 @jit(inline=True)
@@ -292,17 +297,6 @@ def eliminate(trial: LegAt, b: Blocks, work: Work, i: int) -> None:
                 work.rest[3 + j, 0] -= m[j]
 
 
-@jit(inline=True)
-def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, explicit: Array, turns: Array, a: Array, h: float, i: int) -> LegAt:
-    """Leg i at trial accelerations a (n + 1, 6)."""
-    r, k = start.legs, 1 + i
-    crush = Crush(r[i, CRUSH], r[i, CRUSH + 1], r[i, CRUSH + 2], r[i, CRUSH + 3], r[i, CRUSH + 4])
-    attitude = (r[i, Q], r[i, Q + 1], r[i, Q + 2], r[i, Q + 3])
-    known = Explicit(of_row(explicit, i, P), of_row(explicit, i, V), of_row(turns, k, 0), of_row(explicit, i, W))
-    leg, soil, surface = vehicle.legs[i], vehicle.soils[i], vehicle.surfaces[i]
-    return leg_trial(leg, soil, surface, vehicle.pad, body, known, attitude, of_row(a, k, 0), of_row(a, k, 3), crush, start.memory[i], h)
-
-
 class Trial(NamedTuple):
     """Everything at trial accelerations."""
 
@@ -335,6 +329,30 @@ class Stage(NamedTuple):
     attached: Attached
 
 
+@jit(inline=True)
+def crush_of(start: Flight, i: int) -> Crush:
+    """Leg i's memory."""
+    r = start.legs
+    return Crush(r[i, CRUSH], r[i, CRUSH + 1], r[i, CRUSH + 2], r[i, CRUSH + 3], r[i, CRUSH + 4])
+
+
+@jit(inline=True)
+def moved_at(start: Flight, body: BodyAt, given: Stage, a: Array, i: int) -> LegMoved:
+    """Leg i's motion at trial accelerations a (n + 1, 6)."""
+    r, k, explicit = start.legs, 1 + i, given.legs
+    attitude = (r[i, Q], r[i, Q + 1], r[i, Q + 2], r[i, Q + 3])
+    known = Explicit(of_row(explicit, i, P), of_row(explicit, i, V), of_row(given.turns, k, 0), of_row(explicit, i, W))
+    return leg_moved(body, known, attitude, of_row(a, k, 0), of_row(a, k, 3), given.h)
+
+
+@jit(inline=True)
+def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, given: Stage, a: Array, i: int) -> LegAt:
+    """Leg i at trial accelerations a (n + 1, 6)."""
+    moved = moved_at(start, body, given, a, i)
+    wrench, soft = pad_wrench(vehicle.soils[i], vehicle.surfaces[i], vehicle.pad, moved.pad, start.memory[i])
+    return leg_answer(vehicle.legs[i], body, moved, crush_of(start, i), wrench, soft)
+
+
 @jit
 def attached_wrench(attached: Attached, base: Base) -> tuple[Vector, Vector]:
     """Force (N) and torque (N m, about B's origin) of the effects, B."""
@@ -347,10 +365,9 @@ def attached_wrench(attached: Attached, base: Base) -> tuple[Vector, Vector]:
 @jit
 def trial_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array) -> Trial:
     """What is missing at trial accelerations a (n + 1, 6)."""
-    n = len(vehicle.legs)
-    gravity, mass, inertia = vehicle.body.gravity, vehicle.body.mass, vehicle.body.inertia
-    body = body_at(quaternion(start.body, QX), given.body, vector(given.turns[0], 0), a[0], gravity, given.h)
-    legs = [leg_at(vehicle, start, body, given.legs, given.turns, a, given.h, i) for i in range(n)]
+    n, mass = len(vehicle.legs), vehicle.body.mass
+    body = body_at(quaternion(start.body, QX), given.body, vector(given.turns[0], 0), a[0], vehicle.body.gravity, given.h)
+    legs = [leg_at(vehicle, start, body, given, a, i) for i in range(n)]
     size, f, m = 0.0, given.force, given.torque
     if given.attached.active:
         force, torque = attached_wrench(given.attached, body.base)
@@ -362,10 +379,41 @@ def trial_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array) -> Trial:
         size += unit * unit * dot(trial.residual, trial.residual)
         spin = GYRATION / vehicle.legs[i].pad_inertia[0]
         size += spin * spin * dot(trial.twist, trial.twist)
-    r_f = apply(body.turned, axpy(-mass, body.base.pull, f))
-    gyroscopic = cross(body.rate, apply(inertia, body.rate))
-    r_m = apply(body.turned, sub(sub(m, gyroscopic), apply(inertia, body.base.spin_up)))
+    r_f, r_m = body_missing(vehicle.body, body, f, m)
     return Trial(body, legs, r_f, r_m, size + (dot(r_f, r_f) + dot(r_m, r_m)) / (mass * mass))
+
+
+@jit
+def body_missing(own: Body, at: BodyAt, force: Vector, torque: Vector) -> tuple[Vector, Vector]:
+    """What is missing in the body's equations under force and torque about B's origin, in B: N and N m, L."""
+    f = axpy(-own.mass, at.base.pull, force)
+    m = sub(sub(torque, cross(at.rate, apply(own.inertia, at.rate))), apply(own.inertia, at.base.spin_up))
+    return apply(at.turned, f), apply(at.turned, m)
+
+
+@jit
+def missing_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array, missing: Array, power: Array) -> None:
+    """`trial_at` and `powers` without what Newton's matrix alone needs.
+
+    missing  (6 n + 6,) gets the body's force and torque, then each leg's;  power  (n + 1, 4) the powers
+    """
+    body = body_at(quaternion(start.body, QX), given.body, vector(given.turns[0], 0), a[0], vehicle.body.gravity, given.h)
+    f, m = given.force, given.torque
+    if given.attached.active:
+        force, torque = attached_wrench(given.attached, body.base)
+        f, m = add(f, force), add(m, torque)
+    body_powers(body, given, power)
+    for i in range(len(vehicle.legs)):
+        moved = moved_at(start, body, given, a, i)
+        wrench = pad_wrench_alone(vehicle.soils[i], vehicle.surfaces[i], vehicle.pad, moved.pad, start.memory[i])
+        leg = leg_answer(vehicle.legs[i], body, moved, crush_of(start, i), wrench, NO_TANGENTS)
+        f, m = add(f, leg.force), add(m, leg.torque)
+        put_vector(missing, 6 * i + 6, leg.residual)
+        put_vector(missing, 6 * i + 9, leg.twist)
+        leg_powers(body, leg, power[1 + i])
+    r_f, r_m = body_missing(vehicle.body, body, f, m)
+    put_vector(missing, 0, r_f)
+    put_vector(missing, 3, r_m)
 
 
 @jit
@@ -427,21 +475,31 @@ def newton_step(vehicle: Vehicle, at: Trial, h: float, a: Array, step: Array, wo
 
 
 @jit
-def powers(body: BodyAt, legs: Any, given: Stage) -> Array:
-    """Row 0: power through the port and of the effects on the body, W; rows 1..: soil, struts, ball joint of each leg."""
-    r = body.turned
-    power = np.zeros((1 + len(legs), 4))
-    own = apply_transposed(r, body.velocity)
+def body_powers(body: BodyAt, given: Stage, power: Array) -> None:
+    """power (n + 1, 4): row 0 gets that through the port and that of the effects on the body, W."""
+    own = apply_transposed(body.turned, body.velocity)
     power[0, 0] = dot(given.force, own) + dot(given.torque, body.rate)
     if given.attached.active:
         force, torque = attached_wrench(given.attached, body.base)
         power[0, 1] = dot(force, own) + dot(torque, body.rate)
+
+
+@jit
+def leg_powers(body: BodyAt, leg: LegAt, power: Array) -> None:
+    """power (4,) gets those of soil, struts and ball joint of a leg, W."""
+    relative = sub(apply_transposed(body.turned, leg.pad.rate), add(body.rate, cross(leg.at.axis, leg.at.swing)))
+    power[0] = pad_power(leg.wrench, leg.pad)
+    power[1] = leg.motion.power
+    power[2] = dot(leg.ball, relative)
+
+
+@jit
+def powers(body: BodyAt, legs: Any, given: Stage) -> Array:
+    """(n + 1, 4): `body_powers`, then `leg_powers` of each leg."""
+    power = np.zeros((1 + len(legs), 4))
+    body_powers(body, given, power)
     for i in range(len(legs)):
-        trial = legs[i]
-        relative = sub(apply_transposed(r, trial.pad.rate), add(body.rate, cross(trial.at.axis, trial.at.swing)))
-        power[1 + i, 0] = pad_power(trial.wrench, trial.pad)
-        power[1 + i, 1] = trial.motion.power
-        power[1 + i, 2] = dot(trial.ball, relative)
+        leg_powers(body, legs[i], power[1 + i])
     return power
 
 

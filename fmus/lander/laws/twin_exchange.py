@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .blocks import put_quaternion, put_vector, quaternion, vector
 from .compiled import Kept, jit
-from .footpad import DEPTH, POINTS, lever, pad_wrench, slid
+from .footpad import DEPTH, POINTS, lever, pad_wrench_alone, slid
 from .interface import leg_energy
 from .leg import Crush, bottomed, shape, strokes, strut_loads
 from .leg_stepping import LegState
@@ -15,6 +15,7 @@ from .rigid_body import BodyState, body_energy
 from .surface import gap_at, normal_at
 from .twin import CRUSH, Engine, Flight, P, Q, V, Vehicle, W
 from .twin_effects import Effects
+from .twin_nominal import Nominal
 from .twin_stepping import BALL, EFFECTS, ENGINE, SOIL, STRUTS, Ride, Settings, fly, pad_motion, state_of
 from .vectors import add, apply_transposed, dot, rotation, yaw_pitch_roll
 
@@ -71,7 +72,7 @@ def show_leg(vehicle: Vehicle, f: Flight, ledger: Array, touch: Array, i: int, o
     out[15] = 1.0 if bottomed(leg, d[0], d[1], d[2]) else 0.0
     out[16] = -(ledger[1 + i, STRUTS] + ledger[1 + i, BALL])
     out[17] = ledger[1 + i, SOIL]
-    wrench, _ = pad_wrench(vehicle.soils[i], vehicle.surfaces[i], vehicle.pad, motion, f.memory[i])
+    wrench = pad_wrench_alone(vehicle.soils[i], vehicle.surfaces[i], vehicle.pad, motion, f.memory[i])
     gap = 1e300
     for j in range(POINTS):
         gap = min(gap, gap_at(vehicle.surfaces[i], add(motion.position, lever(vehicle.pad, motion.attitude, j))))
@@ -99,6 +100,7 @@ class Run(NamedTuple):
     effects: Effects
     ride: Ride
     settings: Settings
+    nominal: Nominal
     port: Array  # (6, 3): force, its slope, force added, torque, its slope, torque added; N, N/s, N m, N m/s, B
     first: Array  # (1,): step to try first, s
     taken: Array  # (2,): steps taken and refused so far
@@ -127,7 +129,7 @@ def fly_and_show(box: Any, time: float, interval: float) -> float:
     """An interval of a kept run and what the twin shows after it, in one call; gives the step (s) that could not be done, or zero."""
     run = box[0]
     settings = Settings(run.settings.tolerance, run.settings.longest, run.first[0])
-    done = fly(run.vehicle, run.effects, engine_at(run.port), settings, run.ride, time, interval)
+    done = fly(run.vehicle, run.effects, engine_at(run.port), settings, run.ride, run.nominal, time, interval)
     if not done.ok:
         return done.next_step
     run.first[0] = done.next_step

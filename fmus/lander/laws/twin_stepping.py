@@ -35,6 +35,7 @@ from .twin import (
     stage,
 )
 from .twin_effects import Effects, Outside, first_touch, guided, next_corner, no_effects, outside_wrench, within
+from .twin_nominal import BESIDE, KEPT, LENIENT, SAME, Ahead, Nominal, ahead_at, guess_first, keep_step, nominal_room, stage_beside
 from .vectors import ZERO, add, apply, apply_transposed, axpy, cross, from_rotation_vector, multiply, normalise, rotation
 
 Array = NDArray[np.float64]
@@ -233,19 +234,26 @@ class Ride(NamedTuple):
 def integrate(
     vehicle: Vehicle, engine: Engine, settings: Settings, f: Flight, a: Array, ledger: Array, touch: Array, time: float, interval: float
 ) -> Progress:
-    """`fly` without effects on the body."""
-    return fly(vehicle, no_effects(), engine, settings, Ride(f, a, ledger, touch, np.zeros(4)), time, interval)
+    """`fly` without effects on the body, on its own."""
+    ride = Ride(f, a, ledger, touch, np.zeros(4))
+    return fly(vehicle, no_effects(), engine, settings, ride, nominal_room(0, 0), time, interval)
 
 
 @jit
-def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, ride: Ride, time: float, interval: float) -> Progress:
-    """Take the ride over `interval` (s) from `time`, in place; not ok where Newton fails or the steps grow too many."""
+def fly(
+    vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, ride: Ride, nominal: Nominal, time: float, interval: float
+) -> Progress:
+    """Take the ride over `interval` (s) from `time`, in place; not ok where Newton fails or the steps grow too many.
+
+    nominal  gets the steps, or gives them, as its mode says
+    """
     f, a, ledger, touch, bob = ride
     n = len(vehicle.legs)
     work, newton = scratch(n), newton_of(settings.tolerance)
     turns, delta = np.zeros((n + 1, 3)), np.zeros((n + 1, 6))
     t, h = 0.0, min(settings.first, settings.longest)
     steps, rejected = 0, 0
+    along, ahead = True, Ahead(-1, False, 0.0)
     locating = effects.active and guided(effects.tail)
     early, late, sway = nothing_attached(), nothing_attached(), sway_of(bob)
     while interval - t > 1e-12:
@@ -255,7 +263,13 @@ def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, 
         contact = first_touch(touch)
         if effects.active:
             left = min(left, next_corner(effects, contact, time + t, time + interval) - (time + t))
-        h = left if h > 0.999 * left else (0.5 * left if h > 0.5 * left else h)
+        if nominal.use[0] == BESIDE:
+            ahead = ahead_at(nominal, time + t)
+        if ahead.place >= 0:
+            h = min(left, ahead.left) if along else min(h, min(left, ahead.left))
+        else:
+            h = left if h > 0.999 * left else (0.5 * left if h > 0.5 * left else h)
+        same = ahead.place >= 0 and ahead.whole and abs(h - nominal.steps[ahead.place]) < SAME
         g = GAMMA * h
         if effects.active:
             now = state_of(f, a[0], vehicle.body.gravity)
@@ -265,28 +279,45 @@ def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, 
             early = attached_at(effects, outside, GAMMA, swayed(sway, swaying, g))
             late = attached_at(effects, outside, 1.0, swayed(sway, swaying, h))
         begin = explicit_part(vehicle, f, 0.0, a, f, turns)
-        one = a.copy()
-        ok, power_1 = stage(vehicle, newton, f, stage_of(begin, turns, engine, t + g, g, early), one, delta, work)
+        one, ok, power_1 = a.copy(), False, ledger
+        first = stage_of(begin, turns, engine, t + g, g, early)
+        if same:
+            guess_first(nominal, ahead.place, a, one)
+            ok, power_1 = stage_beside(vehicle, newton, f, first, one, nominal.inverse[ahead.place, 0], nominal.share)
+            one = one if ok else a.copy()
+        if not ok:
+            ok, power_1 = stage(vehicle, newton, f, first, one, delta, work)
         middle = stage_state(vehicle, f, begin, turns, one, g)
-        between = explicit_part(vehicle, f, h - g, one, middle, turns)
-        two = one.copy()
-        error = 1e300
+        after = turns.copy()
+        between = explicit_part(vehicle, f, h - g, one, middle, after)
+        second = stage_of(between, after, engine, t + h, g, late)
+        two, error, power_2 = one.copy(), 1e300, power_1
         if ok:
-            ok, power_2 = stage(vehicle, newton, f, stage_of(between, turns, engine, t + h, g, late), two, delta, work)
+            ok = False
+            if same:
+                two += nominal.solved[ahead.place, 1] - nominal.solved[ahead.place, 0]
+                ok, power_2 = stage_beside(vehicle, newton, f, second, two, nominal.inverse[ahead.place, 1], nominal.share)
+                two = two if ok else one.copy()
+            if not ok:
+                ok, power_2 = stage(vehicle, newton, f, second, two, delta, work)
             error = local_error(a, one, two, h) if ok else 1e300
-        if error > settings.tolerance and h > SMALLEST:
+        if error > settings.tolerance * (LENIENT if same else 1.0) and h > SMALLEST:
             rejected += 1
             h *= max(0.2, 0.9 * (settings.tolerance / error) ** (1.0 / 3.0))
+            along = False
             continue
         if not ok:
             return Progress(False, h, steps, rejected)
-        end = stage_state(vehicle, f, between, turns, two, g)
+        end = stage_state(vehicle, f, between, after, two, g)
         seen = touch.copy()
         latch(vehicle, end, seen, time + t, h)
         if locating and contact < 0.0 and first_touch(seen) >= 0.0 and time + t + h - first_touch(seen) > LOCATED:
             rejected += 1
             h = first_touch(seen) - (time + t) + 0.5 * LOCATED
+            along = False
             continue
+        if nominal.use[0] == KEPT:
+            keep_step(vehicle, nominal, time + t, h, f, (first, second), one, two)
         if effects.active and effects.pendulum.mass != 0.0:
             sway = carried_on(vehicle, effects.pendulum, sway, early, late, middle, end, one, two, h)
             bob[0], bob[1], bob[2], bob[3] = sway.place[1], sway.place[2], sway.velocity[1], sway.velocity[2]
@@ -295,6 +326,7 @@ def fly(vehicle: Vehicle, effects: Effects, engine: Engine, settings: Settings, 
         ledger += (h - g) * power_1 + g * power_2
         t += h
         steps += 1
+        along = ahead.left - h < SAME
         grown = 0.9 * (settings.tolerance / max(error, 1e-300)) ** (1.0 / 3.0)
         h = min(settings.longest, h * min(2.0, max(0.2, grown)))
     return Progress(True, h, steps, rejected)

@@ -117,6 +117,22 @@ def skew(a: Vector) -> Matrix:
 
 
 @jit
+def times_skew(m: Matrix, a: Vector) -> Matrix:
+    """m [a x]."""
+    return (cross(m[0], a), cross(m[1], a), cross(m[2], a))
+
+
+@jit
+def skew_times(a: Vector, m: Matrix) -> Matrix:
+    """[a x] m."""
+    return (
+        sub(scale(a[1], m[2]), scale(a[2], m[1])),
+        sub(scale(a[2], m[0]), scale(a[0], m[2])),
+        sub(scale(a[0], m[1]), scale(a[1], m[0])),
+    )
+
+
+@jit
 def solve(m: Matrix, b: Vector) -> Vector:
     """x with m x = b, by Cramer's rule; m must be regular."""
     c0 = cross(m[1], m[2])

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import replace
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from ..laws.rigid_body import Body, BodyState, inertia_matrix
 from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Flight, Vehicle
 from ..laws.twin_effects import Effects, Tail, guided
 from ..laws.twin_exchange import LEG_REPORT, Run, engine_at, fly_and_show, kept, show
+from ..laws.twin_nominal import BESIDE, KEPT, ROOM, Nominal, nominal_room
 from ..laws.twin_stepping import Ride, Settings, pad_motion, push_at_start, start_accelerations, start_flight
 from ..laws.vectors import Vector, apply, from_yaw_pitch_roll, rotation
 from ..shell import Unit, UnitError, input_, output, parameter, state
@@ -87,7 +88,13 @@ class LunarLander(Unit):
     Legs 1 to 4 stand at `azimuth`; each has a soil of its own (`soil.*`, an element a leg), and all one relief (`terrain.*`).
     Parameters are those of VehicleBody,
     GearLeg and RegolithContact.
+    With `variation` = -k a run of values a little different is flown beside the last run that had `variation` = k: by its steps, and from
+    its solutions. Such a run takes a quarter of the time, and the two differ by their values alone: differences of a thousandth of a
+    tolerance give derivatives. Nominal runs are kept by the instance's name, past a reset; they should have the same communication points.
+    Without one a run is on its own.
     """
+
+    nominals: ClassVar[dict[tuple[str, int], Nominal]] = {}
 
     description = "The whole lander in one unit: what the co-simulation must equal."
     required = ("engine.force", "engine.torque", "body.position", "body.quaternion", "body.velocity", "body.angular_velocity")
@@ -108,6 +115,9 @@ class LunarLander(Unit):
         *named("body_term", body_term.BodyTerm),
         parameter("tolerance", 1e-5, "m/s", "local error of any velocity a step", minimum=1e-9, maximum=1e-2),
         parameter("longest_step", 1e-2, "s", "of the integrator", minimum=1e-6),
+        parameter(
+            "variation", 0, "1", "0: own steps; k: own, kept as nominal run k; -k: nominal run k's", minimum=-8, maximum=8, integer=True
+        ),
         input_("engine.force", (0.0, 0.0, 0.0), "N", "on the body, frame B", nominal=1e4, slope=True, added=True),
         input_("engine.torque", (0.0, 0.0, 0.0), "N.m", "on the body about B's origin, frame B", nominal=1e4, slope=True, added=True),
         output("body.position", (4.0, 0.0, 0.0), "m", "of the origin of B, frame L", nominal=1.0),
@@ -170,7 +180,19 @@ class LunarLander(Unit):
             self.span("leg1.pad.position", f"soil{LEGS}.contact_time").reshape(LEGS, LEG_REPORT),
         )
         steps = self["next_step"], self.span("steps", "rejected")
-        self.run = kept(Run(self.vehicle, self.effects, self.ride, settings, self.port, *steps, *self.outputs))
+        self.run = kept(Run(self.vehicle, self.effects, self.ride, settings, self.nominal(), self.port, *steps, *self.outputs))
+
+    def nominal(self) -> Nominal:
+        """The nominal run to be kept or flown beside; room for none on its own."""
+        number = int(self.value("variation"))
+        key = (self.instance_name, abs(number))
+        if number > 0 and key not in self.nominals:
+            self.nominals[key] = nominal_room(LEGS, ROOM)
+        if number == 0 or key not in self.nominals:
+            return nominal_room(0, 0)
+        nominal = self.nominals[key]
+        nominal.use[0], nominal.share[0] = (KEPT if number > 0 else BESIDE), 1.0
+        return nominal
 
     def initialise(self) -> None:
         attitude = from_yaw_pitch_roll(self.value("yaw_start"), self.value("pitch_start"), self.value("roll_start"))

@@ -43,10 +43,11 @@ class Draw:
         generator = np.random.default_rng(self.seed)
         tails = np.sqrt(TAILS / generator.chisquare(TAILS, (self.count, 1)))
         random = tails * generator.standard_normal((self.count, len(z)))
+        around = model.place(z)
         found: list[tuple[float, Array, Array]] = []
         for draw in (np.zeros(len(z)), *random):
             there = clipped(coordinates, folded(coordinates, z + spread @ draw))
-            predicted = model.predict(there)
+            predicted = model.predict(there, beside=around)
             if predicted is not None:
                 found.append((objective(model.residual(predicted), there), there, predicted))
         if not found:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.fit import Fit, fitted
 from orchestrator.diagnosis.landing import Lander
-from orchestrator.diagnosis.problem import Landings, Model
+from orchestrator.diagnosis.problem import Landings, Model, Place
 from orchestrator.diagnosis.tasks.fits import Point
 
 Array = NDArray[np.float64]
@@ -42,7 +42,8 @@ class Probe:
         model = Model(self.landings, self.coordinates, lander, self.point.horizon)
         null = np.concatenate([self.point.z, np.zeros(len(mine))])
         slopes = np.column_stack([self.point.slopes, model.slopes(null, self.point.predicted, mine)])
-        first = fitted(model, null, slopes, self.point.predicted, steps=4)
+        base = model.place(null)
+        first = fitted(model, null, slopes, self.point.predicted, steps=4, beside=base)
         if first is None:
             return None
         jacobian = model.whitened(slopes, self.point.predicted)
@@ -50,7 +51,7 @@ class Probe:
         found = [first]
         for own in [np.array(s) for s in self.starts] if deaf else self._beyond(jacobian, count):
             for size in (1.0, FURTHER):
-                fit = self._let_go(model, lander, slopes, np.clip(size * own, *self._limits(count)), first.objective + HOPELESS)
+                fit = self._let_go(model, base, slopes, np.clip(size * own, *self._limits(count)), first.objective + HOPELESS)
                 if fit is None:
                     break
                 found.append(fit)
@@ -70,15 +71,15 @@ class Probe:
         both = [np.clip(sign * move, low, high) for sign in (1.0, -1.0)]
         return [z for z in both if np.linalg.norm(z) > 0.5 * np.linalg.norm(move)]
 
-    def _let_go(self, model: Model, lander: Lander, slopes: Array, own: Array, ceiling: float) -> Fit | None:
+    def _let_go(self, model: Model, base: Place, slopes: Array, own: Array, ceiling: float) -> Fit | None:
         """The nuisances fitted around the held effect, then all; None where holding it is hopeless."""
         count = len(self.point.z)
         nuisances, effect = self.coordinates[:count], self.coordinates[count:]
         held = tuple(replace(c, low=c.value(z), high=c.value(z), positive=False) for c, z in zip(effect, own.tolist(), strict=True))
-        around = Model(self.landings, (*nuisances, *held), lander, self.point.horizon)
-        fit = fitted(around, np.concatenate([self.point.z, own]), slopes, steps=4)
+        around = Model(self.landings, (*nuisances, *held), model.lander, self.point.horizon)
+        fit = fitted(around, np.concatenate([self.point.z, own]), slopes, steps=4, beside=base)
         if fit is None or fit.objective > ceiling:
             return None
         mine = range(count, len(self.coordinates))
         fresh = np.column_stack([fit.slopes[:, :count], model.slopes(fit.z, fit.predicted, mine)])
-        return fitted(model, fit.z, fresh, fit.predicted, steps=4)
+        return fitted(model, fit.z, fresh, fit.predicted, steps=4, beside=base)
