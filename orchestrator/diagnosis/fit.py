@@ -169,7 +169,7 @@ def _made(
         there = model.predict(z + step, beside=beside)
         if there is not None:
             residual = model.residual(there)
-            if float(np.linalg.norm(residual - before)) > FELT:  # a smaller change is mostly the integrator's
+            if model.lander.varies or float(np.linalg.norm(residual - before)) > FELT:  # a smaller change is mostly the integrator's
                 broyden(slopes, step, there - predicted)
             if objective(residual, z + step, temper) < now:
                 return z + step, there, residual

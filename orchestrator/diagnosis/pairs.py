@@ -27,7 +27,7 @@ def fit_seconds(search: Search, first: Hypothesis, fit: Fit, hypotheses: Sequenc
     own = search.run(STAGE, [_asked(search, fit, h, starts[h.name]) for h in others])
     worth = {h.name: _promised(search, fit, h, starts[h.name], slopes) for h, slopes in zip(others, own, strict=True)}
     chosen = [h for h in sorted(others, key=lambda h: -worth[h.name])[:SECONDS] if worth[h.name] > fit.log_evidence + WORTH]
-    tasks = [FitAt(search.fine, (*fit.coordinates, *h.coordinates), point_of(fit), starts[h.name], 5, search.fresh) for h in chosen]
+    tasks = [FitAt(search.landings, (*fit.coordinates, *h.coordinates), point_of(fit), starts[h.name], 5, search.fresh) for h in chosen]
     found = {}
     for h, pair in zip(chosen, search.run(STAGE, tasks), strict=True):
         if pair is not None:
@@ -45,7 +45,7 @@ def slots_of(h: Hypothesis) -> set[str]:
 
 
 def _asked(search: Search, fit: Fit, h: Hypothesis, z: Array) -> Slopes:
-    return Slopes(search.fine, (*fit.coordinates, *h.coordinates), z, fit.predicted, tuple(range(len(fit.z), len(z))))
+    return Slopes(search.landings, (*fit.coordinates, *h.coordinates), z, fit.predicted, tuple(range(len(fit.z), len(z))))
 
 
 def _promised(search: Search, fit: Fit, h: Hypothesis, z: Array, own: Array) -> float:

@@ -8,7 +8,7 @@ prediction itself (slopes), so that a better knowledge of the noise costs no lan
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -23,14 +23,14 @@ Place = tuple[dict[str, float], ...]
 """Values of each landing."""
 ABOUT = (3.0, np.inf)
 """Standard deviations over all rows by which a difference is to be felt, at least and at most: the slope on the whole, for long steps from
-far off. What the integrator leaves to chance is a twentieth of the least."""
+far off. What an integrator leaves to chance that chooses its own steps is a twentieth of the least."""
 HERE = (1.5, 5.0)
 """The slope at the very point, where a fit is to stand: over 10 σ of mass its column turns by 45 deg."""
+BESIDE = (0.02, 2.0)
+"""Either, where landings fly beside each other: what their steps leave to chance is a thousandth of the least."""
 FELT = ABOUT[0]
+TRIED = 0.02  # of z: the first difference tried beside
 WIDEST = 0.5  # of z
-FINE = {"tolerance": 3e-4}
-"""Of the twin, m/s. At the 3e-3 of a search φ jumps by 1 to 2 from a point to the one beside it, here by 0.07; 1.5 times the computing."""
-
 
 @dataclass
 class Landings:
@@ -44,10 +44,6 @@ class Landings:
     @property
     def size(self) -> int:
         return sum(o.size for o in self.observations)
-
-    def finer(self) -> Landings:
-        """The same, sharing the observations, flown finely enough for a fit to stand: FINE, where the twin flies."""
-        return replace(self, bases=[{**base, **{name: value for name, value in FINE.items() if name in base}} for base in self.bases])
 
     @property
     def parts(self) -> list[slice]:
@@ -99,6 +95,7 @@ class Model:
         predicted: at z, flown beside itself where the lander can;  first: the difference to try first
         """
         low, high = self.coordinates[i].bounds
+        felt = BESIDE if self.lander.varies else felt
         step, large = first, np.inf
         slope = np.zeros(len(predicted))
         while True:
@@ -129,14 +126,15 @@ class Model:
 
         like: (n, coordinates) slopes from somewhere near, which tell how large a difference will be felt.
         """
-        own = self.predict(z, beside=self.place(z)) if self.lander.varies else None
+        varies = self.lander.varies
+        own = self.predict(z, beside=self.place(z)) if varies else None
         predicted = predicted if own is None else own
         chosen = range(len(self.coordinates)) if which is None else which
-        first = [c.step for c in self.coordinates]
+        first = [min(c.step, TRIED) if varies else c.step for c in self.coordinates]
         if like is not None:
             norms = np.linalg.norm(self.whitened(like, predicted), axis=0)
-            needed = [min(WIDEST, 1.2 * felt[0] / max(norm, 1e-9)) for norm in norms.tolist()]
-            first = needed if np.isfinite(felt[1]) else [max(s, n) for s, n in zip(first, needed, strict=True)]
+            needed = [min(WIDEST, (5.0 * BESIDE[0] if varies else 1.2 * felt[0]) / max(norm, 1e-9)) for norm in norms.tolist()]
+            first = needed if varies or np.isfinite(felt[1]) else [max(s, n) for s, n in zip(first, needed, strict=True)]
         columns = [self.slope(i, z, predicted, first[i], felt) for i in chosen]
         return np.stack(columns, axis=1) if columns else np.zeros((len(predicted), 0))
 

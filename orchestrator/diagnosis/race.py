@@ -24,6 +24,7 @@ FEW = 16  # fits: so many or fewer are drawn from more thoroughly
 DRAWS = {False: (16, 1), True: (20, 2)}  # of each fit's posterior, and how many of them are fitted
 PRUNE = 25.0  # of φ behind the best once they stand
 LEAST = (12, 5)  # hypotheses that go on all the same: after the quick steps, to the next horizon
+MOST = 10  # fits taken further at a horizon: where more are alike, what is wanted is not among them, or will be tried again
 ALIKE = 8.0  # of φ: two fits of one hypothesis both go on within this
 APART = 0.05  # of φ: below, they are one
 
@@ -51,6 +52,7 @@ def raced(landings: Landings, before: Sequence[tuple[Hypothesis, Fit]], rung: Ru
     quick = _kept(fits, HOPEFUL, LEAST[0])
     if not few and explains(rung.fit.chi2, counted(landings, point.horizon)):
         return quick  # nobody is to be left behind here
+    quick = quick[:MOST]
     more = [Climb(landings, fit.coordinates, point_of(fit, point.horizon)) for _, fit in quick]
     stood = zip(quick, run(stage, more), strict=True)
     return _kept([(h, fit) for (h, _), fit in stood if fit is not None], PRUNE, LEAST[1])

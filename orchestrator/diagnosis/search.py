@@ -31,7 +31,7 @@ LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
-ANEW = (5, 8.0, 3.0)  # hypotheses raced a second time: so many at most, so far in φ behind the best, and before the base
+ANEW = (5, 8.0, 3.0)  # hypotheses refined at once, and raced: so many at most, so far in φ behind the best, and before the base
 
 
 class UnflyableError(Exception):
@@ -52,8 +52,6 @@ class Search:
     ) -> None:
         """nuisances: the priors of the data; tolerances: what any model is only known to within a few per cent."""
         self.landings, self.crew, self.seed = landings, crew, seed
-        self.fine = landings.finer()
-        """For fits that are to stand; `landings` are for the way there."""
         self.nuisances = (*nuisances, *tolerances)
         self.fresh = tuple(range(len(nuisances)))
         """The data's own nuisances: drawn from their priors, and made anew beside second effects; tolerances are neither."""
@@ -104,7 +102,7 @@ class Search:
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from a rung before it stops to."""
-        here = self.on_the_way(base) or point_of(base)
+        here = point_of(base)
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
             return self.probed(hypotheses, here, "hypotheses")
@@ -115,10 +113,6 @@ class Search:
         tasks = [self._at(self.landings, h, here, np.zeros(len(h.coordinates))) for h in hypotheses]
         others = self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks))
         return best | {n: fit for n, fit in others.items() if n not in best or fit.objective < best[n].objective}
-
-    def on_the_way(self, fit: Fit) -> Point | None:
-        """A fit's nuisances without its effect, flown as landings on the way are: a slope must not be the difference of two ways to fly."""
-        return self._beside(self.landings, fit)
 
     def probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
         """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""
@@ -146,20 +140,28 @@ class Search:
         """One hypothesis raced from the first horizon on, or else fitted from the base fit, and refined; None where it cannot be flown."""
         found = [fit for _, fit in self._raced([hypothesis], 1)] if len(self.path) > 1 else []
         if not found:
-            at_base = self._at(self.landings, hypothesis, self.on_the_way(base) or point_of(base), np.zeros(len(hypothesis.coordinates)))
+            at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
             found = [fit for fit in self.run(stage, [at_base]) if fit is not None]
         return self.refine_all(found[:1], stage)[0] if found else None
 
     def raced_anew(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """The best of those better than the base fit once more, from the first horizon on, where little holds them fast."""
-        most, behind, before = ANEW
-        bound = min(min((fit.objective for fit in fits.values()), default=np.inf) + behind, base.objective - before)
-        near = sorted((n for n in fits if fits[n].objective <= bound), key=lambda n: fits[n].objective)[:most]
+        """The best of those better than the base fit refined, and where that leaves no clear leader, raced from the first horizon on, where
+        little holds them fast.
+        """
+        near = self._near(fits, base)
+        fits = fits | dict(zip(near, self.refine_all([fits[n] for n in near], "finalists"), strict=True))
+        near = self._near(fits, base)
         if len(near) == 1 and fits[near[0]].objective < base.objective - MARGIN:
             return fits
         known = {h.name: h for h in hypotheses}
         found = self._raced([known[n] for n in near], 1) if near else []
         return fits | _better(self._best_of([h.name for h, _ in found], [fit for _, fit in found]), fits)
+
+    def _near(self, fits: Mapping[str, Fit], base: Fit) -> list[str]:
+        """Who is worth another look, best first."""
+        most, behind, before = ANEW
+        bound = min(min((fit.objective for fit in fits.values()), default=np.inf) + behind, base.objective - before)
+        return sorted((n for n in fits if fits[n].objective <= bound), key=lambda n: fits[n].objective)[:most]
 
     def _raced(self, hypotheses: Sequence[Hypothesis], first: int) -> list[tuple[Hypothesis, Fit]]:
         """Over the rungs from `first` to the top, from the rung below."""
@@ -171,12 +173,12 @@ class Search:
 
     def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
         """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
-        point = self._beside(self.fine, fits[winner])
+        point = self.without(fits[winner])
         if point is None:
             return fits
         known = {h.name: h for h in (*hypotheses, NULL)}
         names = [n for n in names if n == NULL.name or fits[n].log_evidence > fits[winner].log_evidence - MARGIN]
-        tasks = [self._at(self.fine, known[n], point, fits[n].z[len(point.z) :]) for n in names]
+        tasks = [self._at(self.landings, known[n], point, fits[n].z[len(point.z) :]) for n in names]
         ends = zip(names, self.run("back-substitution", tasks), strict=True)
         near = {n: fit for n, fit in ends if fit is not None and fit.objective < fits[n].objective + MARGIN}
         return fits | _better(dict(zip(near, self.refine_all(list(near.values()), "back-substitution"), strict=True)), fits)
@@ -186,22 +188,22 @@ class Search:
 
         A wrong effect that fits in part draws the nuisances out of the minimum in which they hid the right one.
         """
-        point = self.on_the_way(fits[winner])
+        point = self.without(fits[winner])
         if point is None:
             return fits
         better = _better(self.probed([h for h in hypotheses if h.name != winner], point, "once more"), fits)
         return self.refine_best(fits | better) if better else fits
 
-    def _beside(self, landings: Landings, fit: Fit) -> Point | None:
-        """The fit's nuisances without its effect; None where these landings cannot be flown there."""
+    def without(self, fit: Fit) -> Point | None:
+        """The fit's nuisances without its effect; None where the landings cannot be flown there."""
         count = len(self.nuisances)
         z = fit.z[:count]
-        (predicted,) = self.crew.run([Predict(landings, self.nuisances, (z,))])[0]
+        (predicted,) = self.crew.run([Predict(self.landings, self.nuisances, (z,))])[0]
         return None if predicted is None else Point(z, predicted, fit.slopes[:, :count], np.inf)
 
     def refine_all(self, fits: Sequence[Fit], stage: str) -> list[Fit]:
-        """Each taken on by the finer landings until fresh slopes gain nothing more."""
-        return list(self.run(stage, [Refine(self.fine, fit) for fit in fits]))
+        """Each taken on until fresh slopes gain nothing more."""
+        return list(self.run(stage, [Refine(self.landings, fit) for fit in fits]))
 
     def run(self, stage: str, tasks: Sequence[Task]) -> list:  # type: ignore[type-arg]
         self.told(stage, self.leader, 0.0)

@@ -21,7 +21,7 @@ from orchestrator.diagnosis.effects.effect import Effect
 from orchestrator.diagnosis.flight import CoSimulation
 from orchestrator.diagnosis.found_term import FoundTerm, body_term_insert, write_effect
 from orchestrator.diagnosis.from_twin import said_by_address
-from orchestrator.diagnosis.landing import ATTITUDE, Course, TwinLander
+from orchestrator.diagnosis.landing import ATTITUDE, NOMINALS, Course, TwinLander
 from orchestrator.diagnosis.master_lander import MasterLanderMaker
 from orchestrator.diagnosis.moves import Move, Named, applied_moves, effect_moves
 from orchestrator.diagnosis.observation import Observation, Reading, Track
@@ -249,3 +249,35 @@ def test_a_found_term_s_fmu_in_the_coupling_does_what_the_parameters_do(zupp: Co
     tree = overlay(zupp.addresses, {f"soil.{name}": float(value) for name, value in parameters.items()})
     told = run_scenario(SCENARIOS / "apollo11_zupp.toml", changes={"stop_time": 0.25, **tree})
     assert all((replaced.columns[name] == told.columns[name]).all() for name in told.columns)
+
+
+def test_a_landing_beside_another_is_the_landing(zupp: CoSimulation) -> None:
+    """The same within what the twin's tolerance leaves (LIMIT), itself to the last bit, and what cannot be flown is not."""
+    watched, twin = observation(), twin_of(zupp)
+    grid, nominal = watched.grid(STOP, {}), {"tolerance": 3e-4}
+    asked = grid, watched.columns, watched.final
+    alone, itself = twin.land(nominal, *asked), twin.land(nominal, *asked, nominal)
+    assert twin.varies
+    assert alone is not None
+    assert itself is not None
+    assert all(np.array_equal(alone.columns[name], itself.columns[name]) for name in alone.columns)
+    for change in ({"mass": 7200.0}, {"soil.friction[1]": 0.4}, {"slosh.mass": 200.0}, {"sensor.time_constant": 0.02}):
+        own = twin.land({**nominal, **change}, *asked)
+        assert farthest(own, twin.land({**nominal, **change}, *asked, nominal)) < LIMIT
+        assert farthest(own, alone) > LIMIT, "the change is not felt"
+    assert twin.land({**nominal, "mass": -1.0}, *asked, nominal) is None
+    assert farthest(twin.land(nominal, *asked, {"mass": -1.0}), alone) == 0.0, "on its own where the nominal cannot be flown"
+    twin.close()
+
+
+def test_more_nominal_landings_than_the_unit_keeps(zupp: CoSimulation) -> None:
+    watched, twin = observation(), twin_of(zupp)
+    asked = watched.grid(STOP, {}), watched.columns, watched.final
+    first = None
+    for mass in [7000.0 + 10.0 * k for k in range(NOMINALS + 2)] + [7000.0]:
+        found = twin.land({"mass": mass + 1.0}, *asked, {"mass": mass})
+        first = first or found
+    assert first is not None
+    assert found is not None
+    assert all(np.array_equal(first.columns[name], found.columns[name]) for name in first.columns)
+    twin.close()

@@ -63,7 +63,7 @@ def test_beside_itself_it_is_the_same_landing_without_a_rejected_step(kept: tupl
 def test_a_small_difference_beside_gives_the_derivative(kept: tuple[Nominal, Flown]) -> None:
     """By friction, against central differences of landings of their own at 3e-7 m/s, a thousand times finer.
 
-    Tolerance: that of the nominal run's discretisation, 2 % here, and the curvature of the differences, 1.6 % (over 0.01 of friction: 40 %).
+    Tolerance: the nominal run's discretisation leaves 2 %, the differences' curvature 1.6 % (40 % over 0.01 of friction).
     """
     d, wide = 1e-4, 1e-3
     exact = (landing(kept[0], ALONE, 0.36 + wide, 3e-7).rates - landing(kept[0], ALONE, 0.36 - wide, 3e-7).rates) / (2.0 * wide)

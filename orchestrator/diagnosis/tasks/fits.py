@@ -71,7 +71,7 @@ class FitAt:
 
 @dataclass(frozen=True)
 class Refine:
-    """A fit seen by these landings, which may be finer than those it was made with, and taken on with slopes of its very point."""
+    """A fit by landings of its own, taken on with slopes of its very point."""
 
     landings: Landings
     fit: Fit

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import Coordinate
-from orchestrator.diagnosis.fit import Fit, fitted
+from orchestrator.diagnosis.fit import Fit, fitted, gauss_newton_step, objective
 from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.problem import Landings, Model, Place
 from orchestrator.diagnosis.tasks.fits import Point
@@ -18,6 +18,7 @@ INSENSITIVE = 1.0  # norm of a column: below, the hypothesis cannot be felt wher
 FARTHEST = 3.0  # of z
 ENERGY = 64.0  # λ, sigma squared, at which a hypothesis is held
 FURTHER = 2.5  # times that, where the first try was not hopeless
+AS_FORESEEN = 0.7, 1.4  # times the cost that the slopes foresee
 HOPELESS = 16.0  # of φ: half of what holding an absent effect costs
 
 
@@ -77,9 +78,29 @@ class Probe:
         nuisances, effect = self.coordinates[:count], self.coordinates[count:]
         held = tuple(replace(c, low=c.value(z), high=c.value(z), positive=False) for c, z in zip(effect, own.tolist(), strict=True))
         around = Model(self.landings, (*nuisances, *held), model.lander, self.point.horizon)
+        if self._hopeless(around, base, slopes, own, ceiling):
+            return None
         fit = fitted(around, np.concatenate([self.point.z, own]), slopes, steps=4, beside=base)
         if fit is None or fit.objective > ceiling:
             return None
         mine = range(count, len(self.coordinates))
         fresh = np.column_stack([fit.slopes[:, :count], model.slopes(fit.z, fit.predicted, mine)])
         return fitted(model, fit.z, fresh, fit.predicted, steps=4, beside=base)
+
+    def _hopeless(self, around: Model, base: Place, slopes: Array, own: Array, ceiling: float) -> bool:
+        """Whether holding the effect costs what the slopes foresee, and that is too much: where they are right, no fit need be flown."""
+        count = len(self.point.z)
+        jacobian = around.whitened(slopes, self.point.predicted)
+        residual = around.residual(self.point.predicted)
+        foreseen = residual - jacobian[:, count:] @ own
+        move = gauss_newton_step(jacobian[:, :count], foreseen, self.point.z, around.coordinates[:count], 1.0)
+        z = np.concatenate([self.point.z + move, own])
+        before = objective(residual, np.append(self.point.z, 0.0 * own))
+        cost = objective(foreseen - jacobian[:, :count] @ move, z) - before
+        if before + cost < ceiling:
+            return False
+        there = around.predict(z, beside=base)
+        if there is None:
+            return False
+        paid = objective(around.residual(there), z) - before
+        return AS_FORESEEN[0] * cost < paid < AS_FORESEEN[1] * cost

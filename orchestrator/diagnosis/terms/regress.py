@@ -117,8 +117,8 @@ class Regression:
 def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Sequence[str]) -> str | None:
     """All of it; the best of the terms `offered`, None where none of them can be flown."""
     search = regression.search
-    here = search.on_the_way(base) or point_of(base)
-    there = search.on_the_way(better) if better is not None else None
+    here = point_of(base)
+    there = search.without(better) if better is not None else None
     for point in (here, there):
         if point is not None:
             regression.look_from(View(point.z, point.predicted, point.slopes), list(regression.hypotheses))
@@ -145,7 +145,7 @@ def chosen(regression: Regression, offered: Sequence[str]) -> list[str]:
 
 def _look_again(regression: Regression, winner: str, offered: Sequence[str]) -> bool:
     """From the winner's nuisances: the other forms at its port are fitted from there, and whoever promises clearly more than it has."""
-    point = regression.search.on_the_way(regression.fits[winner])
+    point = regression.search.without(regression.fits[winner])
     if point is None:
         return False
     view = View(point.z, point.predicted, point.slopes)
