@@ -182,7 +182,8 @@ def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, 
     setup, state = diagnosis.setup, diagnosis.state
     if setup is None or state is None:
         return False
-    found = find_term(state, setup, crew, request.seed, told)
+    beat = max(state.fits[name].log_evidence for name in names) - state.fits[NULL.name].log_evidence
+    found = find_term(state, setup, crew, request.seed, told, beat)
     if found is None or not found.adequate or found.second is not None:  # two laws at once have no such prior
         return False
     adopt(state, found)

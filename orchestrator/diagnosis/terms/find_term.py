@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
@@ -21,11 +23,13 @@ from orchestrator.diagnosis.terms.stability import stability
 from orchestrator.diagnosis.verdict import ADEQUATE, BEATS
 
 SECONDS = 12  # terms that are tried beside the first
+SHARE = 0.25  # of what is to be beaten: slopes that promise less promise nothing
 
 
-def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told | None = None) -> Found | None:
+def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told | None = None, beat: float = -np.inf) -> Found | None:
     """The best generic term that is not a refused effect of the library; None where none beats nothing missing.
 
+    beat: ln evidence over nothing missing that it must come near to be of use
     Not where the search goes through the master: the dictionary is in the twin's names, and several hundred landings long.
     """
     if setup.why_slow:
@@ -33,7 +37,7 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     search = state.search
     search.crew, search.told = crew, told or search.told
     known = in_scenario(dictionary(), setup.addresses)
-    regression = Regression(search, {n: term for n, (term, _) in known.items()}, {n: h for n, (_, h) in known.items()})
+    regression = Regression(search, {n: term for n, (term, _) in known.items()}, {n: h for n, (_, h) in known.items()}, SHARE * beat)
     tried = {part for name in state.fits for part in parts_of(name)}
     offered = [n for n, (term, _) in known.items() if term.equals not in tried]
     base = state.fits.get(NULL.name, state.base)

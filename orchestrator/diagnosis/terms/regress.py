@@ -41,6 +41,8 @@ class Regression:
     search: Search
     terms: Mapping[str, Term]
     hypotheses: Mapping[str, Hypothesis]
+    least: float = -np.inf
+    """In ln evidence: what slopes must promise of a term, at some view, for it to be probed."""
     views: list[View] = field(default_factory=list)
     promised: dict[str, float] = field(default_factory=dict)
     """ln evidence by the last view that has the term."""
@@ -122,7 +124,9 @@ def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Se
     for point in (here, there):
         if point is not None:
             regression.look_from(View(point.z, point.predicted, point.slopes), list(regression.hypotheses))
-    first = chosen(regression, offered)
+    first = [n for n in chosen(regression, offered) if regression.gains[n] >= regression.least]
+    if not first:
+        return None
     regression.keep(search.probed([regression.hypotheses[n] for n in first], here, "terms"))
     if not explains(base.chi2, search.landings.size):
         regression.keep(search.fit_all([regression.hypotheses[n] for n in first[:CLIMBING]], base))
