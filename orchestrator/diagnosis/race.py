@@ -21,7 +21,7 @@ from orchestrator.diagnosis.tasks.fits import Climb, FitAt, Point, point_of
 QUICK = 3  # steps before the hopeful are told from the hopeless
 HOPEFUL = 40.0  # of φ behind the best after them
 FEW = 16  # fits: so many or fewer are drawn from more thoroughly
-DRAWS = {False: (10, 1), True: (20, 2)}  # of each fit's posterior, and how many of them are fitted
+DRAWS = {False: (16, 1), True: (20, 2)}  # of each fit's posterior, and how many of them are fitted
 PRUNE = 25.0  # of φ behind the best once they stand
 LEAST = (12, 5)  # hypotheses that go on all the same: after the quick steps, to the next horizon
 MOST = 10  # fits taken further at a horizon: where more are alike, what is wanted is not among them, or will be tried again

@@ -31,7 +31,8 @@ LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
 FINALISTS = 5
-ANEW = (5, 8.0, 3.0)  # hypotheses refined at once, and raced: so many at most, so far in φ behind the best, and before the base
+ALIKE, RIVALS = (12, 14.0), (3, 5.0)  # better than the base fit, refined at once, and raced: so many at most, so far in φ behind the best
+BEFORE = 3.0  # of φ: how much better
 
 
 class UnflyableError(Exception):
@@ -101,18 +102,20 @@ class Search:
     # Hypotheses
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis' own fit: from the base fit where that explains the data, else in a race from a rung before it stops to."""
+        """Every hypothesis' own fit, the best refined: from the base fit; where none explains the data, in a race."""
         here = point_of(base)
         explained = self.explained()
         if explained == len(self.path) or explains(base.chi2, self.landings.size):
-            return self.probed(hypotheses, here, "hypotheses")
-        fits = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
-        best = self._best_of([h.name for h, _ in fits], [fit for _, fit in fits])
-        if fits and explains(fits[0][1].chi2, self.landings.size):
-            return best
+            return self._refined(self.probed(hypotheses, here, "hypotheses"), base)
         tasks = [self._at(self.landings, h, here, np.zeros(len(h.coordinates))) for h in hypotheses]
-        others = self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks))
-        return best | {n: fit for n, fit in others.items() if n not in best or fit.objective < best[n].objective}
+        fits = self._refined(self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks)), base)
+        if any(explains(fit.chi2, self.landings.size) for fit in fits.values()):
+            return fits
+        raced = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
+        best = self._best_of([h.name for h, _ in raced], [fit for _, fit in raced])
+        if not (raced and explains(raced[0][1].chi2, self.landings.size)):
+            best |= {n: fit for n, fit in fits.items() if n not in best or fit.objective < best[n].objective}
+        return self._refined(best, base)
 
     def probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
         """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""
@@ -145,22 +148,22 @@ class Search:
         return self.refine_all(found[:1], stage)[0] if found else None
 
     def raced_anew(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """The best of those better than the base fit refined, and where that leaves no clear leader, raced from the first horizon on, where
-        little holds them fast.
-        """
-        near = self._near(fits, base)
-        fits = fits | dict(zip(near, self.refine_all([fits[n] for n in near], "finalists"), strict=True))
-        near = self._near(fits, base)
+        """The best once more, from the first horizon on, where little holds them fast; unless one leads."""
+        near = self._near(fits, base, *RIVALS)
         if len(near) == 1 and fits[near[0]].objective < base.objective - MARGIN:
             return fits
         known = {h.name: h for h in hypotheses}
         found = self._raced([known[n] for n in near], 1) if near else []
         return fits | _better(self._best_of([h.name for h, _ in found], [fit for _, fit in found]), fits)
 
-    def _near(self, fits: Mapping[str, Fit], base: Fit) -> list[str]:
+    def _refined(self, fits: dict[str, Fit], base: Fit) -> dict[str, Fit]:
+        """The best of those better than the base fit with slopes of their very points: that is often all they lack."""
+        near = self._near(fits, base, *ALIKE)
+        return fits | dict(zip(near, self.refine_all([fits[n] for n in near], "finalists"), strict=True))
+
+    def _near(self, fits: Mapping[str, Fit], base: Fit, most: int, behind: float) -> list[str]:
         """Who is worth another look, best first."""
-        most, behind, before = ANEW
-        bound = min(min((fit.objective for fit in fits.values()), default=np.inf) + behind, base.objective - before)
+        bound = min(min((fit.objective for fit in fits.values()), default=np.inf) + behind, base.objective - BEFORE)
         return sorted((n for n in fits if fits[n].objective <= bound), key=lambda n: fits[n].objective)[:most]
 
     def _raced(self, hypotheses: Sequence[Hypothesis], first: int) -> list[tuple[Hypothesis, Fit]]:
