@@ -169,6 +169,9 @@ def try_pairs(state: State) -> None:
                 state.fits[pair] = fit
                 state.hypotheses.append(hypothesis)
     pairs = [name for name in state.fits if len(parts_of(name)) > 1]
+    if pairs and _ahead(state, pairs) > WORTH_RACING:  # a second effect may have shown the first one alone where to stand
+        leader = max(pairs, key=lambda name: state.fits[name].log_evidence)
+        state.fits = state.search.back_substituted(state.fits, state.hypotheses, singles, leader)
     if pairs and _ahead(state, pairs) > WORTH_RACING:
         _race_pairs(state)
     if _ahead(state, pairs) < OVERTAKES and adequacy(state.fits[singles[0]], state.setup.landings).p >= ADEQUATE:
