@@ -11,7 +11,7 @@ from orchestrator.diagnosis.places import LEGS, PLACES, parse
 from orchestrator.errors import AddressError
 from orchestrator.master.slave import stem
 
-STEPPING = ("tolerance", "longest_step", "longest_substep")
+STEPPING = ("tolerance", "longest_step", "longest_substep", "variation")
 """Of the twin's own integrator: the units have theirs."""
 GROUND = "terrain."
 """What lies on the plane: the scenario's own, moved by no coordinate."""
