@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_smoothing_spline
 
 from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.crew import Counting
 from orchestrator.diagnosis.effects import Effect
 from orchestrator.diagnosis.fit import Fit, fitted
 from orchestrator.diagnosis.problem import Model
@@ -214,28 +215,13 @@ def _named(effect: Effect, vehicle: Vehicle, at: tuple[Array, Array | None], pro
     return {"name": effect.name, "title": effect.title, "unit": effect.port, "parameters": parameters, "probability": probability}
 
 
-class _Counting:
-    """The twin, counted."""
-
-    def __init__(self, vehicle: Vehicle) -> None:
-        self.lander, self.flown = vehicle.lander(), 0
-        self.varies = self.lander.varies
-
-    def land(self, *arguments: Any) -> Any:
-        self.flown += 1
-        return self.lander.land(*arguments)
-
-    def close(self) -> None:
-        self.lander.close()
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("name", choices=list(BASELINES))
     parser.add_argument("--out", type=Path, default=Path("out"))
     options = parser.parse_args()
     vehicle = Vehicle()
-    lander = _Counting(vehicle)
+    lander = Counting(vehicle.lander())
     said = BASELINES[options.name](vehicle, Handed(vehicle, Path("fit"), lander), Handed(vehicle, Path("holdout"), lander))
     text = json.dumps({**said, "simulations": lander.flown, "method": options.name}, indent=1)
     (options.out / "diagnosis.json").write_text(text.replace("NaN", "null") + "\n", "utf-8")

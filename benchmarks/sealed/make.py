@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from orchestrator.diagnosis.effects import Effect
 from orchestrator.diagnosis.measured import write_measured
+from orchestrator.diagnosis.vehicle import LONGEST, TOLERANCE
 from sealed import truth
 from sealed.commit import commit
 from sealed.hidden import Hidden, Signatures, parameters
@@ -31,7 +32,7 @@ Random = np.random.Generator
 Landed = tuple[Array, dict[str, float]]
 DRAWS = 12  # effects tried for one case before the case is given up
 FIT, HOLDOUT = 0, 1
-FINE = {"tolerance": 3e-4, "longest_step": 0.02}  # of the twin, for λ: as a search flies where a fit is to stand
+FINE = {"tolerance": TOLERANCE, "longest_step": LONGEST}  # of the twin, for λ: as a search flies
 MOVED = (0.5, 1.0)  # how far a landing's conditions are from the scenario's, in scene.MOVED
 
 

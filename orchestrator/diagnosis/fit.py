@@ -154,7 +154,7 @@ def fitted(
             renewals -= 1
             slopes[:, list(renew)] = model.slopes(z, predicted, renew, slopes)
             beside = model.place(z)
-            again = model.predict(z, beside=beside) if model.lander.varies else None
+            again = model.own(z) if model.lander.varies else None
             if again is not None:
                 predicted, residual = again, model.residual(again)
     return seen_from(model, z, predicted, slopes)
@@ -191,7 +191,7 @@ def refined(model: Model, fit: Fit, steps: int = 4) -> Fit:
 
 def settled(model: Model, fit: Fit) -> Fit:
     """The fit by a landing on its own, beside which others may then be flown."""
-    predicted = model.predict(fit.z, beside=model.place(fit.z)) if model.lander.varies else None
+    predicted = model.own(fit.z) if model.lander.varies else None
     return fit if predicted is None else seen_from(model, fit.z, predicted, fit.slopes)
 
 

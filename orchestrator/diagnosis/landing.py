@@ -134,7 +134,9 @@ class TwinLander:
         key = (self.bound, grid.tobytes(), tuple(sorted(nominal.items())))
         kept = self.nominals.pop(key, None)
         if kept is None:
-            place = len(self.nominals) + 1 if len(self.nominals) < NOMINALS else self.nominals.pop(next(iter(self.nominals))).place
+            if len(self.nominals) == NOMINALS:
+                del self.nominals[next(iter(self.nominals))]
+            place = min(set(range(1, NOMINALS + 1)) - {one.place for one in self.nominals.values()})
             try:
                 kept = Nominal(place, *self._flown({**nominal, VARIATION: place}, grid))
             except OrchestratorError:

@@ -63,6 +63,10 @@ class Model:
         """Where a point's landings are, for others to be flown beside."""
         return tuple(self.values(z, k) for k in range(len(self.landings.observations)))
 
+    def own(self, z: Array) -> Array | None:
+        """`predict` of a point beside which others will be flown."""
+        return self.predict(z, beside=self.place(z))
+
     def predict(self, z: Array, before: tuple[Array, Array] | None = None, beside: Place | None = None) -> Array | None:
         """What all landings would have left; None where one of them cannot be flown.
 
@@ -127,7 +131,7 @@ class Model:
         like: (n, coordinates) slopes from somewhere near, which tell how large a difference will be felt.
         """
         varies = self.lander.varies
-        own = self.predict(z, beside=self.place(z)) if varies else None
+        own = self.own(z) if varies else None
         predicted = predicted if own is None else own
         chosen = range(len(self.coordinates)) if which is None else which
         first = [min(c.step, TRIED) if varies else c.step for c in self.coordinates]

@@ -85,8 +85,6 @@ class LoggedRinging(Ringing):
     def __init__(self, log: Path, most: int) -> None:
         self.log, self.most = log, most
 
-    varies = False
-
     def land(
         self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str], beside: object = None
     ) -> Course | None:

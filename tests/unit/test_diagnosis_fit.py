@@ -158,8 +158,6 @@ def test_broyden_s_formula_makes_slopes_meet_the_move_and_leaves_others_alone() 
 
 def test_what_cannot_be_flown_gives_no_fit() -> None:
     class Crashing(Line):
-        varies = False
-
         def land(self, *_):  # type: ignore[no-untyped-def]
             return None
 

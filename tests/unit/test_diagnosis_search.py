@@ -4,17 +4,18 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pytest
-from diagnosis_samples import RINGING, Formula, Ringing, coordinate, one_landing, ringing, ringing_landing, tracks
+from diagnosis_samples import RINGING, Formula, Line, Ringing, coordinate, one_landing, ringing, ringing_landing, tracks
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.adequacy import adequacy
-from orchestrator.diagnosis.crew import Crew, content
+from orchestrator.diagnosis.crew import Crew, content, counted
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.problem import Model
 from orchestrator.diagnosis.search import Search, UnflyableError
+from orchestrator.diagnosis.tasks import probe as probe_task
 from orchestrator.diagnosis.tasks.fits import FitAt, Point
 from orchestrator.diagnosis.tasks.probe import Probe
 from orchestrator.diagnosis.verdict import Judged, judge
@@ -75,8 +76,6 @@ def test_a_library_without_effects_leaves_the_base_fit_alone(missing: Mapping[st
 class Refused(Ringing):
     """A lander that lands nothing."""
 
-    varies = False
-
     def land(
         self, values: Mapping[str, float], grid: Array, columns: Sequence[str], final: Sequence[str], beside: object = None
     ) -> Course | None:
@@ -131,6 +130,22 @@ def _phi(model: Model, z: Array) -> float:
     assert predicted is not None
     r = model.residual(predicted)
     return 0.5 * float(r @ r + z @ z)
+
+
+def test_a_probe_that_costs_what_the_slopes_foresee_ends_after_one_landing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """y = a + b t without a slope: held at λ = 64 it costs 32 of φ, as foreseen; with nothing foreseen four steps are tried."""
+    times = np.arange(0.05, 2.0, 0.05)
+    landings = one_landing(tracks(Line(), {"a": 0.0, "b": 0.0}, ("y",), times, 0.1, 4), (), {"a": 0.0, "b": 0.0})
+    alone = Model(landings, (coordinate("a"),), Line())
+    z = np.zeros(1)
+    predicted = alone.predict(z)
+    assert predicted is not None
+    probe = Probe(landings, (coordinate("a"), coordinate("b")), Point(z, predicted, alone.slopes(z, predicted), np.inf), ())
+    soon, fit = counted(probe, Line())
+    monkeypatch.setattr(probe_task, "AS_FORESEEN", (9.0, 9.0))
+    late, other = counted(probe, Line())
+    assert soon < late
+    assert fit.objective == pytest.approx(other.objective)
 
 
 class Grained(Ringing):

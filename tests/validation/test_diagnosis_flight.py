@@ -270,6 +270,16 @@ def test_a_landing_beside_another_is_the_landing(zupp: CoSimulation) -> None:
     twin.close()
 
 
+def test_a_nominal_that_cannot_be_flown_takes_no_other_s_place(zupp: CoSimulation) -> None:
+    """All places taken, one given up for a nominal in vain: the next one must not be kept where another still is."""
+    watched, twin = observation(), twin_of(zupp)
+    asked = watched.grid(0.1, {}), watched.columns, watched.final
+    for mass in (*(7000.0 + 10.0 * k for k in range(NOMINALS)), -1.0, 7100.0):
+        twin.land({"mass": 7001.0}, *asked, {"mass": mass})
+    assert sorted(one.place for one in twin.nominals.values()) == list(range(1, NOMINALS + 1))
+    twin.close()
+
+
 def test_more_nominal_landings_than_the_unit_keeps(zupp: CoSimulation) -> None:
     watched, twin = observation(), twin_of(zupp)
     asked = watched.grid(STOP, {}), watched.columns, watched.final

@@ -78,7 +78,7 @@ class Refine:
 
     def __call__(self, lander: Lander) -> Fit:
         model = Model(self.landings, self.fit.coordinates, lander)
-        predicted = model.predict(self.fit.z, beside=model.place(self.fit.z))
+        predicted = model.own(self.fit.z)
         if predicted is None:
             return self.fit
         return refined(model, seen_from(model, self.fit.z, predicted, self.fit.slopes))
