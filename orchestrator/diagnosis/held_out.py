@@ -13,9 +13,10 @@ from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
-from orchestrator.diagnosis.search import Search, Told, renoised
+from orchestrator.diagnosis.search import Search, Told, UnflyableError, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import State, hear_noise
+from orchestrator.diagnosis.verdict import ADEQUATE
 
 STAGE = "held-out landing"
 
@@ -42,6 +43,7 @@ def ask_holdouts(
     for name in names:
         own = posterior_of(state.fits[name], len(state.search.nuisances))
         fit = search.fit_once(Hypothesis(name, tuple(own)), null, STAGE)
+        fit = climbed_with(held, own, crew, seed, told) if fit is None or adequacy(fit, held.landings).p < ADEQUATE else fit
         if fit is not None:
             null, fits[name] = exchanged(search, null, fit)
     if fits:
@@ -50,6 +52,17 @@ def ask_holdouts(
     evidence = fits[NULL.name].log_evidence
     gains = {n: (fit.log_evidence - evidence, adequacy(fit, held.landings).p) for n, fit in fits.items() if n != NULL.name}
     return fits, dict.fromkeys(names, (-np.inf, 0.0)) | gains
+
+
+def climbed_with(held: Setup, own: Sequence[Coordinate], crew: Crew, seed: int, told: Told | None) -> Fit | None:
+    """The nuisances fitted with the effect in from the first horizon on; None where that cannot be flown.
+
+    A strong effect draws the fit of nothing missing, and whatever begins there, into false minima.
+    """
+    try:
+        return Search(held.landings, held.nuisances, (*held.tolerances, *own), crew, seed, told).base()
+    except UnflyableError:
+        return None
 
 
 def exchanged(search: Search, null: Fit, fit: Fit) -> tuple[Fit, Fit]:
