@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.diagnosis.coordinates import clipped
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.diagnose import Request, Told, beside_scenarios, library
 from orchestrator.diagnosis.effects.effect import Effect
 from orchestrator.diagnosis.hypothesis import Hypothesis
-from orchestrator.diagnosis.likeness import Flown, Signature, cosines, groups, signature
+from orchestrator.diagnosis.likeness import Flown, Signature, cosines, groups, just_shows, signature
 from orchestrator.diagnosis.measured import read_measured
 from orchestrator.diagnosis.more_sensors import SENSORS, Equipped, Sensor, equipped
 from orchestrator.diagnosis.problem import Model, Nobody
@@ -62,34 +63,37 @@ def fly(setup: Setup, with_all: Equipped, crew: Crew, seed: int, told: Told | No
         raise UserError(f"{setup.addresses.where}: cannot be flown from the priors of {', '.join(setup.names)}; check the priors")
     tasks = [Slopes(landings, base, z, null, (i,)) for i in range(len(base))]
     columns = crew.run(tasks, lambda done, of: told("nuisances", "", done / of))
-    asks: list[Predict | Slopes] = []
-    for h in setup.hypotheses:
-        asks += _asked(setup, with_all, h, z, null)
-    found = crew.run(asks, lambda done, of: told("effects", "", done / of))
     model = Model(landings, base, Nobody())
-    flown = [
-        _flown(model, h, null, found[2 * i], found[2 * i + 1], np.array(h.scaled_starts()).reshape(-1, len(h.coordinates)))
-        for i, h in enumerate(setup.hypotheses)
-    ]
-    return model.whitened(np.column_stack(columns), null), flown
-
-
-def _asked(setup: Setup, with_all: Equipped, h: Hypothesis, z: Array, null: Array) -> tuple[Predict, Slopes]:
-    """The landings of one effect: at its starts, and for the slopes at its null."""
-    coordinates, count = (*setup.nuisances, *setup.tolerances, *h.coordinates), len(z)
-    points = tuple(np.concatenate([z, start]) for start in h.scaled_starts())
-    at_null = np.concatenate([z, np.zeros(len(h.coordinates))])
-    return (
-        Predict(with_all.landings, coordinates, points),
-        Slopes(with_all.landings, coordinates, at_null, null, tuple(range(count, len(coordinates)))),
+    jacobian = model.whitened(np.column_stack(columns), null)
+    effects = [(*base, *h.coordinates) for h in setup.hypotheses]
+    own = [range(len(base), len(coordinates)) for coordinates in effects]
+    at_null = [np.append(z, np.zeros(len(which))) for which in own]
+    slopes = crew.run(
+        [Slopes(landings, c, x, null, tuple(w)) for c, x, w in zip(effects, at_null, own, strict=True)],
+        lambda done, of: told("slopes of effects", "", done / of),
     )
+    found = [_Trial(h, model.whitened(s, null), with_all.measured, jacobian) for h, s in zip(setup.hypotheses, slopes, strict=True)]
+    there = crew.run(
+        [Predict(landings, c, tuple(np.append(z, point) for point in trial.points)) for c, trial in zip(effects, found, strict=True)],
+        lambda done, of: told("effects", "", done / of),
+    )
+    return jacobian, [trial.flown(model, null, rows) for trial, rows in zip(found, there, strict=True)]
 
 
-def _flown(model: Model, h: Hypothesis, null: Array, there: Sequence[Array | None], slopes: Array, starts: Array) -> Flown:
-    unflown = np.full(len(null), np.nan)
-    made = [unflown if row is None else model.whitened((row - null)[:, None], null)[:, 0] for row in there]
-    one_sided = all(c.positive for c in h.coordinates)
-    return Flown(h.name, model.whitened(slopes, null), np.column_stack(made), starts, one_sided)
+class _Trial:
+    """One effect to be flown at its starts and, by its slopes, where it just shows."""
+
+    def __init__(self, h: Hypothesis, slopes: Array, measured: Array, jacobian: Array) -> None:
+        self.name, self.slopes = h.name, slopes
+        self.one_sided = all(c.positive for c in h.coordinates)
+        shows = just_shows(slopes[measured], jacobian[measured], self.one_sided)
+        self.points = [*map(np.asarray, h.scaled_starts()), *([] if shows is None else [clipped(h.coordinates, shows)])]
+
+    def flown(self, model: Model, null: Array, rows: Sequence[Array | None]) -> Flown:
+        unflown = np.full(len(null), np.nan)
+        changes = [unflown if row is None else model.whitened((row - null)[:, None], null)[:, 0] for row in rows]
+        points = np.array(self.points).reshape(-1, self.slopes.shape[1])
+        return Flown(self.name, self.slopes, np.column_stack(changes), points, self.one_sided)
 
 
 def distinction(

@@ -21,8 +21,7 @@ from orchestrator.diagnosis.signatures import UNSEEN, projected
 Array = NDArray[np.float64]
 ALIKE = 0.8
 """Cosine from which two effects cannot be told apart at λ = 25: the other one leaves 25 (1 - 0.8²) = 9 of it, three standard deviations."""
-FELT = 3.0  # standard deviations in all rows: less is mostly the integrator's
-SMALL = (0.08, 0.5)  # z of the smallest difference and of the widest
+SIZES = (0.02, 1.0)  # z of the smallest signature flown and of the widest
 
 
 @dataclass(frozen=True)
@@ -33,9 +32,9 @@ class Flown:
     slopes: Array
     """(n, m): at its null, one column a parameter, per unit of z."""
     changes: Array
-    """(n, k): from its null to each of its starts."""
+    """(n, k): from its null to each of its starts, and to where it just shows."""
     starts: Array
-    """(k, m): z of the starts."""
+    """(k, m): their z."""
     one_sided: bool = False
     """Whether every parameter has one sign only."""
 
@@ -85,17 +84,29 @@ def signature(flown: Flown, jacobian: Array) -> Signature:
     return Signature(flown.name, energy, shown, direction, visible, span, flown.one_sided)
 
 
+def just_shows(slopes: Array, jacobian: Array, one_sided: bool) -> Array | None:
+    """z (m,) in the most visible direction, where λ = ENOUGH by the slopes at the null; None where nothing is felt there.
+
+    To be flown: soil damping's slope at its null has a cosine of 0.44 with momentum transfer as that just shows, the two as they
+    both just show one of 0.86.
+    """
+    energies, directions = np.linalg.eigh(projected(jacobian, slopes))
+    if energies[-1] <= 0.0:
+        return None
+    direction = np.abs(directions[:, -1]) if one_sided else directions[:, -1]
+    return direction * float(np.clip(np.sqrt(ENOUGH / energies[-1]), *SIZES))
+
+
 def _candidates(flown: Flown, jacobian: Array) -> list[tuple[float, Array, Array]]:
-    """(|z|, direction, column): every start, and the most visible direction at the null where it is felt there."""
+    """(|z|, direction, column) of all that was flown; of the slopes at the null where none of it can be."""
     starts = np.where(flown.sizing, flown.starts, 0.0)
     sizes = np.linalg.norm(starts, axis=1)
     found = [(float(s), z / s, flown.changes[:, k] / s) for k, (s, z) in enumerate(zip(sizes, starts, strict=True)) if s > 0.0]
     found = [one for one in found if np.isfinite(one[2]).all() and one[2].any()]
-    direction = np.linalg.eigh(projected(jacobian, flown.slopes))[1][:, -1]
-    column = flown.slopes @ direction
-    norm = float(np.linalg.norm(column))
-    if norm * SMALL[1] >= FELT:
-        found.append((float(np.clip(FELT / norm, *SMALL)), direction, column))
+    small = None if found else just_shows(flown.slopes, jacobian, flown.one_sided)
+    if small is not None:
+        size = float(np.linalg.norm(small))
+        found.append((size, small / size, flown.slopes @ small / size))
     return found
 
 

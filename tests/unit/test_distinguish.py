@@ -12,7 +12,7 @@ from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.distinguish import distinction, fly
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.landing import ATTITUDE, Course
-from orchestrator.diagnosis.likeness import Flown, cosines, groups, signature
+from orchestrator.diagnosis.likeness import Flown, cosines, groups, just_shows, signature
 from orchestrator.diagnosis.more_sensors import Equipped, Sensor, equipped
 from orchestrator.diagnosis.observation import Observation, Reading, Track
 from orchestrator.diagnosis.problem import Landings
@@ -128,3 +128,22 @@ def test_a_landing_that_cannot_be_flown_at_a_start_leaves_the_slope_at_the_null(
 
 def test_effects_that_hardly_show_are_in_no_group() -> None:
     assert groups(["a", "b"], np.ones((2, 2)), [400.0, 1.0]) == []
+
+
+def test_where_an_effect_just_shows_its_slopes_promise_lambda_25() -> None:
+    slopes = np.array([[10.0, 0.0], [0.0, 40.0]])
+    assert just_shows(slopes, np.zeros((2, 1)), True) == pytest.approx([0.0, 5.0 / 40.0])
+    assert just_shows(0.0 * slopes, np.zeros((2, 1)), True) is None
+
+
+def test_the_smallest_and_the_widest_signature_are_bounded() -> None:
+    assert just_shows(np.array([[1e4]]), np.zeros((1, 1)), True) == pytest.approx([0.02])
+    assert just_shows(np.array([[-1e-3]]), np.zeros((1, 1)), True) == pytest.approx([1.0])
+
+
+def test_the_signature_is_that_of_the_size_which_just_shows() -> None:
+    """Started at z = 1, where first + bent z has λ of thousands; at the null it is `first` alone."""
+    slopes, near, far = np.array([[50.0], [0.0]]), np.array([5.0, 0.1]), np.array([50.0, 50.0])
+    found = signature(Flown("x", slopes, np.column_stack([far, near]), np.array([[1.0], [0.1]])), np.zeros((2, 1)))
+    assert found.visible == pytest.approx(near / 0.1)
+    assert found.shows == pytest.approx(0.1, rel=1e-3)
