@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 STEP = 0.01  # s, of the clocks tried
 NEAR = 0.06  # s: a clock nearer to zero than this means that the data start at first contact
 CLEAR = 0.7  # of the misfit at zero: another clock must be better than this
-FLOOR = 0.1  # of a channel's own range: how well the base scenario may be expected to fit at all
+FLOOR = 0.1  # of a range: how well the base scenario may be expected to fit at all
 SWAPPED = 0.25  # of the misfit as read: a swap must be better than this
 EXACT = 0.05  # of it: a swap that fits within the floor as well needs less of a misfit as read
 
@@ -41,15 +41,20 @@ def first_contact(observation: Observation, course: Course) -> float:
 
 
 def _misfit(observation: Observation, course: Course, shift: float) -> float:
-    """Mean square distance over the tracks, each in units of its noise and a share of its range; before contact the vehicle flies free."""
+    """Mean square distance over the tracks, in units of noise and of a share of the widest range in their series.
+
+    Of the widest: a channel in which hardly anything happens is off by what its prior leaves open, at every clock alike. Before contact the
+    vehicle flies free.
+    """
     total, count = 0.0, 0
-    for track in observation.tracks:
-        if len(track.times) == 0:
-            continue
-        there = sampled(course, track.column, track.times - shift)
-        scale = np.hypot(track.sigma, FLOOR * np.ptp(track.readings))
-        total += float(np.square((track.readings - there) / scale).clip(max=100.0).sum())
-        count += len(track.times)
+    for places in observation.series.values():
+        tracks = [observation.tracks[i] for i in places if len(observation.tracks[i].times)]
+        widest = max((float(np.ptp(track.readings)) for track in tracks), default=0.0)
+        for track in tracks:
+            there = sampled(course, track.column, track.times - shift)
+            scale = np.hypot(track.sigma, FLOOR * widest)
+            total += float(np.square((track.readings - there) / scale).clip(max=100.0).sum())
+            count += len(track.times)
     return total / max(count, 1)
 
 

@@ -80,3 +80,11 @@ def test_swapped_or_turned_axes_are_told_with_how_to_read_them(order: Three, sig
 @pytest.mark.parametrize("stretch", [0.5, 0.8, 1.0, 1.3, 2.0])
 def test_a_good_record_of_a_somewhat_other_landing_is_not_called_swapped(stretch: float) -> None:
     assert swapped(observation(0.0, 0.0, stretch), course()) == ""
+
+
+def test_a_quiet_channel_that_is_off_does_not_hide_the_clock() -> None:
+    """The first rate hardly moves and is off by 30 of its noise at every clock; the other two tell the time."""
+    seen = observation(0.1, 0.85)
+    quiet = seen.tracks[0]
+    quiet.readings[:] = quiet.readings.mean() + 0.1 * (quiet.readings - quiet.readings.mean()) + 30.0 * SIGMA
+    assert first_contact(seen, course()) == pytest.approx(0.85, abs=2.0 * STEP)
