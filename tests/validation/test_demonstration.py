@@ -69,5 +69,8 @@ def test_what_is_hidden_gets_its_verdict(what: str, diagnoses: dict[str, Future[
     if case.verdict == "effect":
         assert tuple(effect["name"] for effect in found["effects"]) == case.names, told
         assert found["gap"]["closure"] >= 0.8, found["gap"]
+    if case.verdict == "none_of_my_effects":
+        assert found["term"]["port"] == "body", found["term"]["words"]
+        assert found["term"]["closure"] >= 0.8, found["gap"]
     if case.verdict == "cannot_tell":
         assert set(found["cannot_tell"]["names"]) >= set(case.names), told
