@@ -88,7 +88,7 @@ def just_shows(slopes: Array, jacobian: Array, one_sided: bool) -> Array | None:
     """z (m,) in the most visible direction, where λ = ENOUGH by the slopes at the null; None where nothing is felt there.
 
     To be flown: soil damping's slope at its null has a cosine of 0.44 with momentum transfer as that just shows, the two as they
-    both just show one of 0.86.
+    both just show one of 0.91.
     """
     energies, directions = np.linalg.eigh(projected(jacobian, slopes))
     if energies[-1] <= 0.0:
