@@ -11,10 +11,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
+from orchestrator.diagnosis.landing import ATTITUDE, RATES, TELEMETRY, Course
 from orchestrator.diagnosis.measured.landing import Measured, Prior, Scalar, Series
 from orchestrator.diagnosis.observation import Observation, Reading, Track
-from sealed.truth import TELEMETRY, final_columns
+from sealed.truth import final_columns
 from sealed.vehicle import Known, Vehicle
 
 Array = NDArray[np.float64]

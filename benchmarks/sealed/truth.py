@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.effects import Effect
-from orchestrator.diagnosis.landing import ATTITUDE, RATES, SPIN, Course
+from orchestrator.diagnosis.landing import ATTITUDE, RATES, SPIN, TELEMETRY, Course
 from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.recorded import column
@@ -23,7 +23,6 @@ TIGHT = {"tolerance": 1e-7, "longest_step": 5e-3}
 COUPLED = {"tolerance": 1e-7, "max_interval": 2e-3}
 GRID = 5e-3  # s between kept instants of the twin
 STOP = 4.0  # s since first contact: at rest
-TELEMETRY = tuple(f"telemetry.{name.removeprefix('rates.')}" for name in RATES)
 STRUTS = ("primary", "left", "right")
 
 

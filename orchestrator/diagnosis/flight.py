@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.effects.effect import Insert
-from orchestrator.diagnosis.landing import RATES, SPIN, Course
+from orchestrator.diagnosis.landing import RATES, SPIN, TELEMETRY, Course
 from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.places import PLACES
@@ -25,7 +25,6 @@ from orchestrator.master.slave import Kind, Value
 from orchestrator.scenario.parameters import checked
 from orchestrator.scenario.read import Tree, merge
 
-TELEMETRY = tuple(name.replace("rates", "telemetry") for name in RATES)
 PEAK = "peak."
 
 

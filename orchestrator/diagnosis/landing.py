@@ -25,6 +25,9 @@ AXES = ("yaw", "pitch", "roll")
 RATES = tuple(f"rates.{axis}" for axis in AXES)
 ATTITUDE = tuple(f"attitude.{axis}" for axis in AXES)
 SPIN = tuple(f"body.angular_acceleration[{i}]" for i in (1, 2, 3))
+TELEMETRY = tuple(f"telemetry.{axis}" for axis in AXES)
+TELEMETRY_SLOPES = tuple(f"telemetry_slope.{axis}" for axis in AXES)
+"""Columns that a course may have beside those of the telemetry: their derivatives by time."""
 SENSOR = "sensor."
 FLOWN = 2  # parts of an interval of the grid in which the twin is flown where the sensor behind it does something
 PARTS = 2  # of each of these, for the sensor
@@ -110,7 +113,7 @@ class TwinLander:
         except OrchestratorError:
             return None
         course = {name: rows[:, i] for i, name in enumerate(wanted)}
-        course |= {f"telemetry.{axis}": course[f"rates.{axis}"] for axis in AXES} if neutral else self._sensed(flown, course, sensor)
+        course |= _as_received(course) if neutral else self._sensed(flown, course, sensor)
         course = course if flown is grid else {name: column[::FLOWN] for name, column in course.items()}
         return Course(grid, course, dict(zip(final, last.tolist(), strict=True)))
 
@@ -189,11 +192,10 @@ class TwinLander:
     def _bind_sensor(self) -> None:
         inputs = (*RATES, *(f"{name}_slope" for name in RATES))
         self.sensor_in, self.sensor_out = np.zeros(6), np.zeros(3)
-        self.sensor.bind(Binding(inputs, (), tuple(f"telemetry.{axis}" for axis in AXES), 3, self.sensor_in, self.sensor_out))
+        self.sensor.bind(Binding(inputs, (), TELEMETRY, 3, self.sensor_in, self.sensor_out))
 
     def _sensed(self, grid: Array, course: Mapping[str, Array], values: Mapping[str, float]) -> dict[str, Array]:
         """What the ground receives of the rates, by the sensor's own FMU."""
-        names = [f"telemetry.{axis}" for axis in AXES]
         variables = self.sensor.interface.variables
         fine = subdivided(grid, PARTS)
         known = [CubicHermiteSpline(grid, course[rate], course[spin]) for rate, spin in zip(RATES, SPIN, strict=True)]
@@ -210,8 +212,13 @@ class TwinLander:
             self.sensor_in[:3], self.sensor_in[3:] = rates[i], slopes[i]
             self.sensor.step(time, step)
             received[i + 1] = self.sensor_out
-        received = received[::PARTS]
-        return dict(zip(names, received.T, strict=True))
+        changing = np.gradient(received, fine, axis=0)
+        return dict(zip((*TELEMETRY, *TELEMETRY_SLOPES), np.hstack([received, changing])[::PARTS].T, strict=True))
+
+
+def _as_received(course: Mapping[str, Array]) -> dict[str, Array]:
+    """The telemetry of a sensor that does nothing."""
+    return {new: course[old] for new, old in zip((*TELEMETRY, *TELEMETRY_SLOPES), (*RATES, *SPIN), strict=True)}
 
 
 def subdivided(grid: Array, parts: int) -> Array:

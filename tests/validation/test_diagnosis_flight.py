@@ -21,10 +21,10 @@ from orchestrator.diagnosis.effects.effect import Effect
 from orchestrator.diagnosis.flight import CoSimulation
 from orchestrator.diagnosis.found_term import FoundTerm, body_term_insert, write_effect
 from orchestrator.diagnosis.from_twin import said_by_address
-from orchestrator.diagnosis.landing import ATTITUDE, NOMINALS, Course, TwinLander
+from orchestrator.diagnosis.landing import ATTITUDE, NOMINALS, TELEMETRY, Course, TwinLander
 from orchestrator.diagnosis.master_lander import MasterLanderMaker
 from orchestrator.diagnosis.moves import Move, Named, applied_moves, effect_moves
-from orchestrator.diagnosis.observation import Observation, Reading, Track
+from orchestrator.diagnosis.observation import NEAR, ORIGIN, Observation, Reading, Track
 from orchestrator.diagnosis.outcome import Estimate
 from orchestrator.diagnosis.overlay import overlay
 from orchestrator.diagnosis.proof import Belief, Observed, in_sigmas, prove
@@ -37,9 +37,9 @@ from orchestrator.simulation import run_scenario
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 EFFECTS = load_library([SCENARIOS / "candidates"])
 INSERTED = [name for name, effect in EFFECTS.items() if effect.insert is not None]
-TELEMETRY = tuple(f"telemetry.{axis}" for axis in ("yaw", "pitch", "roll"))
 STOP = 1.2
 LIMIT = 0.2
+READ_OFF = 0.05  # sigma RMS a channel: a quarter of what the twin may differ from the units
 FINAL = {f"leg{k}.{strut}.stroke": 0.00635 for k in (1, 2, 3, 4) for strut in ("primary", "right", "left")} | {
     f"soil{k}.{what}": 0.01 for k in (1, 2, 3, 4) for what in ("penetration", "skid")
 }
@@ -267,6 +267,19 @@ def test_a_landing_beside_another_is_the_landing(zupp: CoSimulation) -> None:
         assert farthest(own, alone) > LIMIT, "the change is not felt"
     assert twin.land({**nominal, "mass": -1.0}, *asked, nominal) is None
     assert farthest(twin.land(nominal, *asked, {"mass": -1.0}), alone) == 0.0, "on its own where the nominal cannot be flown"
+    twin.close()
+
+
+def test_samples_are_read_off_a_landing_whose_grid_meets_them_by_another_clock(zupp: CoSimulation) -> None:
+    """As if it had been flown for them, as long as the clocks count as alike."""
+    watched, twin = observation(), twin_of(zupp)
+    for late in ({ORIGIN: 0.9 * NEAR}, {ORIGIN: -0.9 * NEAR}):
+        assert watched.dated_alike(late, {})
+        read, met = (twin.land({}, watched.grid(STOP, clock), watched.columns, watched.final) for clock in ({}, late))
+        assert read is not None
+        assert met is not None
+        apart = in_sigmas(watched, watched.predicted(read, late) - watched.predicted(met, late))
+        assert max(apart.values()) < READ_OFF, apart
     twin.close()
 
 
