@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -180,11 +181,12 @@ def _made(
 def refined(model: Model, fit: Fit, steps: int = 4) -> Fit:
     """The fit with all slopes made anew at its very point, taken on from there, and again as long as that gains."""
     for _ in range(AGAIN):
-        before = fit.objective
         slopes = model.slopes(fit.z, fit.predicted, like=fit.slopes, felt=HERE)
-        better = fitted(model, fit.z, slopes, fit.predicted, steps=steps)
-        fit = settled(model, better) if better is not None else fit
-        if before - fit.objective < GAIN:
+        here = seen_from(model, fit.z, fit.predicted, slopes)
+        found = fitted(model, fit.z, slopes, fit.predicted, steps=steps)
+        found = here if found is None else settled(model, found)
+        before, fit = here, min(here, found, key=attrgetter("objective"))
+        if before.objective - fit.objective < GAIN:
             break
     return fit
 

@@ -1,15 +1,20 @@
 """Fits: the posterior and the evidence of models for which both are known."""
 
+from collections.abc import Mapping, Sequence
 from math import exp, pi, sqrt
 
 import numpy as np
 import pytest
 from diagnosis_samples import RINGING, Line, Ringing, coordinate, one_landing, ringing_landing, tracks
+from numpy.typing import NDArray
 from scipy.integrate import dblquad, quad
 
-from orchestrator.diagnosis.fit import broyden, fitted, refined, seen_from
+from orchestrator.diagnosis.fit import broyden, fitted, refined, seen_from, settled
+from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.observation import Reading
 from orchestrator.diagnosis.problem import ABOUT, HERE, Model
+
+Array = NDArray[np.float64]
 
 
 def density_of(x: float) -> float:
@@ -163,3 +168,34 @@ def test_what_cannot_be_flown_gives_no_fit() -> None:
 
     model = line((0.5, 0.3), 0.1)
     assert fitted(Model(model.landings, model.coordinates, Crashing()), np.zeros(2), np.zeros((13, 2))) is None
+
+
+class Deceiving(Line):
+    """Beside another landing y = a + (b - 2 (a - a')) t: what it lacks in b seems to come with a, as corners read off a grid did."""
+
+    varies = True
+
+    def land(
+        self,
+        values: Mapping[str, float],
+        grid: Array,
+        columns: Sequence[str],
+        final: Sequence[str],
+        beside: Mapping[str, float] | None = None,
+    ) -> Course | None:
+        away = 0.0 if beside is None else values["a"] - beside["a"]
+        return super().land({**values, "b": values["b"] - 2.0 * away}, grid, columns, final)
+
+
+def test_a_refined_fit_is_no_worse_than_it_was_where_landings_beside_it_deceive() -> None:
+    hidden = {"a": 0.3, "b": -0.2}
+    landings = one_landing(tracks(Line(), hidden, ["y"], TIMES, 0.05, 3), (), {"a": 0.0, "b": 0.0})
+    model, z = Model(landings, (coordinate("a"),), Deceiving()), np.array([0.3])
+    predicted = model.own(z)
+    assert predicted is not None
+    slopes = model.slopes(z, predicted)
+    begun = seen_from(model, z, predicted, slopes)
+    tempted = fitted(model, z, slopes, predicted)
+    assert tempted is not None
+    assert settled(model, tempted).objective > begun.objective + 1.0, "or the test sees nothing"
+    assert refined(model, begun).objective <= begun.objective
