@@ -12,7 +12,7 @@ from orchestrator.diagnosis.hypothesis import Hypothesis, joined
 from orchestrator.diagnosis.problem import Model, Nobody
 from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.tasks.fits import FitAt, point_of
-from orchestrator.diagnosis.tasks.predict import Slopes
+from orchestrator.diagnosis.tasks.predict import slopes_beside
 
 Array = NDArray[np.float64]
 SECONDS = 6  # second effects fitted beside a first
@@ -24,7 +24,8 @@ def fit_seconds(search: Search, first: Hypothesis, fit: Fit, hypotheses: Sequenc
     """Pairs with a first effect by name, with their fits; the best two refined."""
     others = [h for h in hypotheses if h.name != first.name and not slots_of(h) & slots_of(first)]
     starts = {h.name: np.concatenate([fit.z, np.zeros(len(h.coordinates))]) for h in others}
-    own = search.run(STAGE, [_asked(search, fit, h, starts[h.name]) for h in others])
+    asks = [slopes_beside(search.landings, fit.coordinates, fit.z, fit.predicted, h.coordinates) for h in others]
+    own = search.run(STAGE, asks)
     worth = {h.name: _promised(search, fit, h, starts[h.name], slopes) for h, slopes in zip(others, own, strict=True)}
     chosen = [h for h in sorted(others, key=lambda h: -worth[h.name])[:SECONDS] if worth[h.name] > fit.log_evidence + WORTH]
     tasks = [FitAt(search.landings, (*fit.coordinates, *h.coordinates), point_of(fit), starts[h.name], 5, search.fresh) for h in chosen]
@@ -42,10 +43,6 @@ def fit_seconds(search: Search, first: Hypothesis, fit: Fit, hypotheses: Sequenc
 def slots_of(h: Hypothesis) -> set[str]:
     """What a hypothesis moves."""
     return {name for c in h.coordinates for name, _ in c.slots}
-
-
-def _asked(search: Search, fit: Fit, h: Hypothesis, z: Array) -> Slopes:
-    return Slopes(search.landings, (*fit.coordinates, *h.coordinates), z, fit.predicted, tuple(range(len(fit.z), len(z))))
 
 
 def _promised(search: Search, fit: Fit, h: Hypothesis, z: Array, own: Array) -> float:

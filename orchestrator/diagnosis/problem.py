@@ -55,13 +55,18 @@ class Landings:
 class Model:
     """Predictions at points over a set of coordinates, of landings flown to a horizon (s since first contact) or to their end."""
 
-    def __init__(self, landings: Landings, coordinates: Sequence[Coordinate], lander: Lander, horizon: float = np.inf) -> None:
+    def __init__(
+        self, landings: Landings, coordinates: Sequence[Coordinate], lander: Lander, horizon: float = np.inf, standing: int | None = None
+    ) -> None:
+        """standing: so many first coordinates alone say beside which landing others are flown; those behind them must be at their null."""
         self.landings, self.coordinates, self.lander, self.horizon = landings, tuple(coordinates), lander, horizon
+        self.standing = standing
         self.weights = np.concatenate([o.weights(horizon) for o in landings.observations])
 
     def place(self, z: Array) -> Place:
         """Where a point's landings are, for others to be flown beside."""
-        return tuple(self.values(z, k) for k in range(len(self.landings.observations)))
+        bases, first = self.landings.bases, self.coordinates[: self.standing]
+        return tuple(applied(base, first, z[: self.standing], k) for k, base in enumerate(bases))
 
     def own(self, z: Array) -> Array | None:
         """`predict` of a point beside which others will be flown."""

@@ -183,8 +183,12 @@ class Search:
         names = [n for n in names if n == NULL.name or fits[n].log_evidence > fits[winner].log_evidence - MARGIN]
         tasks = [self._at(self.landings, known[n], point, fits[n].z[len(point.z) :]) for n in names]
         ends = zip(names, self.run("back-substitution", tasks), strict=True)
-        near = {n: fit for n, fit in ends if fit is not None and fit.objective < fits[n].objective + MARGIN}
-        return fits | _better(dict(zip(near, self.refine_all(list(near.values()), "back-substitution"), strict=True)), fits)
+        return self.if_better(fits, {n: fit for n, fit in ends if fit is not None}, "back-substitution")
+
+    def if_better(self, fits: dict[str, Fit], found: Mapping[str, Fit], stage: str) -> dict[str, Fit]:
+        """The fits with those found that are better once refined; who is hopelessly worse is not."""
+        near = {n: fit for n, fit in found.items() if fit.objective < fits[n].objective + MARGIN}
+        return fits | _better(dict(zip(near, self.refine_all(list(near.values()), stage), strict=True)), fits)
 
     def once_more(self, hypotheses: Sequence[Hypothesis], fits: dict[str, Fit], winner: str) -> dict[str, Fit]:
         """All hypotheses probed again from the best one's nuisances, where even that one leaves more than noise.

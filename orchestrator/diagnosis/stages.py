@@ -14,6 +14,7 @@ from orchestrator.diagnosis.climb import explains
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hand_over import handed_over
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import TRUST, Noise, Stretch, noise_of
@@ -31,6 +32,7 @@ SETTLED = 0.15  # s after the last faster instant
 PAIRED_WITH = 2  # singles that second effects are tried beside
 WORTH_RACING = 2.0  # in ln evidence over any single: pairs that are raced
 OVERTAKES = 6.0  # in ln evidence over an adequate single: pairs that are kept; about what their prior asks for
+HAND_OVERS = 2  # from a winner, and from whoever overtakes it by that
 MISLED = 8.0  # of φ: a base fit that proves so far from its best has misled the effects that were judged from it
 FOUND = 0.05  # s, standard deviation of a clock that is not as the data say: 93 were 0.04 off RMS, 0.10 at most
 CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
@@ -133,6 +135,13 @@ def _substitute(state: State) -> None:
         return
     rivals = [n for n in ranked[1:4] if n != NULL.name]
     state.fits = state.search.back_substituted(state.fits, state.hypotheses, [NULL.name, *rivals], ranked[0])
+    for _ in range(HAND_OVERS):
+        winner = _ranked(state)[0]
+        if winner == NULL.name:
+            return
+        state.fits = handed_over(state.search, state.fits, state.hypotheses, winner)
+        if _ranked(state)[0] == winner:
+            return
 
 
 def _rehear(state: State, crew: Crew) -> None:

@@ -1,5 +1,6 @@
 """A law outside the library beside what would be named: who gets the verdict. The regression and the landings are made up."""
 
+from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +13,7 @@ from orchestrator.diagnosis.outcome import Outcome
 from orchestrator.diagnosis.verdict import Judged, probabilities
 
 TERM = Hypothesis("torque", ())
+find_term = import_module("orchestrator.diagnosis.terms.find_term")  # the package gives the function that name
 
 
 def state_of(evidence: dict[str, float]) -> Any:
@@ -63,3 +65,24 @@ def test_the_more_probable_of_both_is_said(
     assert sorted(len(parts_of(h.name)) for h in state.hypotheses) == sorted([len(parts_of(named)), *([1] if overtaken else [])])
     if overtaken:
         assert diagnosis.outcome.term == {"words": TERM.name, "closure": pytest.approx(0.95)}
+
+
+@pytest.mark.parametrize(
+    ("evidence", "promised", "asked"),
+    [(30.0, 16.0, True), (30.0, 14.0, False), (200.0, 155.0, True), (200.0, 145.0, False)],  # 15 behind, or a quarter
+)
+def test_terms_are_regressed_beside_a_name_only_where_one_could_take_over(
+    monkeypatch: Any, evidence: float, promised: float, asked: bool
+) -> None:
+    state = state_of({NULL.name: 0.0, "damping": evidence})
+    term = SimpleNamespace(equals="")
+    monkeypatch.setattr(find_term, "dictionary", dict)
+    monkeypatch.setattr(find_term, "in_scenario", lambda *_: {TERM.name: (term, TERM)})
+    monkeypatch.setattr(find_term, "offers", lambda search, fit, rivals: {h.name: (promised, None) for h in rivals})
+    regressed: list[Any] = []
+    monkeypatch.setattr(find_term, "regressed", lambda regression, *_: regressed.append(regression))
+    setup: Any = SimpleNamespace(why_slow="", addresses=None)
+    state.base, state.search.told = None, None
+    crew: Any = None
+    assert find_term.find_term(state, setup, crew, beat=evidence) is None
+    assert bool(regressed) == asked

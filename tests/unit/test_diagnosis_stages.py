@@ -143,6 +143,7 @@ def test_a_search_that_was_misled_or_explains_too_little_begins_anew(monkeypatch
     monkeypatch.setattr(stages, "hear_noise", lambda *_, **__: [])
     monkeypatch.setattr(stages, "renoised", lambda _, it: it)
     monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=p))
+    monkeypatch.setattr(stages, "handed_over", lambda _, fits, *__: fits)
     setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
     state = run_search(setup, None, 0, None, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
     assert Scripted.again == ([EFFECT] if again else [])

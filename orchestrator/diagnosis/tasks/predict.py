@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,10 +39,18 @@ class Slopes:
     z: Array
     predicted: Array
     which: tuple[int, ...]
-    horizon: float = np.inf
+    standing: int | None = None
+    """Of the coordinates: those behind are at their null, and differ from the others' landing by nothing but what they are set to."""
 
     def __call__(self, lander: Lander) -> Array:
-        return Model(self.landings, self.coordinates, lander, self.horizon).slopes(self.z, self.predicted, self.which)
+        model = Model(self.landings, self.coordinates, lander, standing=self.standing)
+        return model.slopes(self.z, self.predicted, self.which)
+
+
+def slopes_beside(landings: Landings, coordinates: Sequence[Coordinate], z: Array, predicted: Array, own: Sequence[Coordinate]) -> Slopes:
+    """Those of an effect's own coordinates at its null, beside others at a point whose prediction is known."""
+    count, every = len(z), np.append(z, np.zeros(len(own)))
+    return Slopes(landings, (*coordinates, *own), every, predicted, tuple(range(count, len(every))), count)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,10 +10,11 @@ import numpy as np
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hand_over import offers
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.outcome import Estimate
 from orchestrator.diagnosis.pairs import fit_seconds
-from orchestrator.diagnosis.search import Told
+from orchestrator.diagnosis.search import Search, Told
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import State
 from orchestrator.diagnosis.terms.dictionary import dictionary, in_scenario
@@ -23,6 +25,7 @@ from orchestrator.diagnosis.terms.stability import stability
 from orchestrator.diagnosis.verdict import ADEQUATE, BEATS
 
 SECONDS = 12  # terms that are tried beside the first
+COULD = 15.0, 0.25  # of ln evidence, or of what is to be beaten: a term that takes over from the best and promises so much less is no rival
 SHARE = 0.25  # of what is to be beaten: slopes that promise less promise nothing
 
 
@@ -41,12 +44,21 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     tried = {part for name in state.fits for part in parts_of(name)}
     offered = [n for n, (term, _) in known.items() if term.equals not in tried]
     base = state.fits.get(NULL.name, state.base)
-    winner = regressed(regression, base, best_of_library(state.fits), offered)
+    best = best_of_library(state.fits)
+    if best is not None and np.isfinite(beat) and not _could_take_over(search, best, [known[n][1] for n in offered], beat):
+        return None
+    winner = regressed(regression, base, best, offered)
     null = base.log_evidence
     if winner is None or regression.fits[winner].log_evidence - null < BEATS:
         return None
     found = told_of(regression, winner, set(offered), null, seed)
     return with_second(regression, found, offered, null)
+
+
+def _could_take_over(search: Search, best: Fit, terms: Sequence[Hypothesis], beat: float) -> bool:
+    """Whether the slopes at the best fit promise of any term that it does nearly as well in the place of the effect."""
+    least = best.log_evidence - max(COULD[0], COULD[1] * beat)
+    return any(promised > least for promised, _ in offers(search, best, terms).values())
 
 
 def adopt(state: State, found: Found) -> None:

@@ -19,7 +19,7 @@ from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.search import Search
 from orchestrator.diagnosis.tasks.fits import FitAt, Point, point_of
-from orchestrator.diagnosis.tasks.predict import Slopes
+from orchestrator.diagnosis.tasks.predict import slopes_beside
 from orchestrator.diagnosis.terms.linear import Linear, View, linear, whitened
 from orchestrator.diagnosis.terms.term import Term
 
@@ -75,8 +75,8 @@ class Regression:
     def look_from(self, view: View, names: Sequence[str]) -> Linear:
         """Slopes of these terms at a view, and what they promise."""
         search = self.search
-        z, own = np.concatenate([view.z, [0.0]]), (len(view.z),)
-        asks = [Slopes(search.landings, (*search.nuisances, *self.hypotheses[n].coordinates), z, view.predicted, own) for n in names]
+        terms = [self.hypotheses[n].coordinates for n in names]
+        asks = [slopes_beside(search.landings, search.nuisances, view.z, view.predicted, term) for term in terms]
         columns = search.run("terms", asks)
         view.columns = {n: column[:, 0] for n, column in zip(names, columns, strict=True)}
         self.views.append(view)

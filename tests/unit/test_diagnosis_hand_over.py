@@ -1,0 +1,87 @@
+"""A winner's effect handed over: rivals that look like it with other nuisances only."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from diagnosis_samples import Formula, coordinate, one_landing, tracks
+from numpy.typing import NDArray
+
+from orchestrator.diagnosis.crew import Crew
+from orchestrator.diagnosis.fit import Fit, seen_from
+from orchestrator.diagnosis.hand_over import handed_over, taken_over
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.problem import Model
+from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.tasks.predict import slopes_beside
+
+Array = NDArray[np.float64]
+TIMES = np.linspace(0.05, 1.95, 40)
+
+
+class Warped(Formula):
+    """y = n + (east - west) t + west + other t^2/4: one side up is the other down, on a ground that is higher."""
+
+    def column(self, name: str, values: Mapping[str, float], t: Array) -> Array:
+        v = values
+        return np.asarray(v["n"] + (v["east"] - v["west"]) * t + v["west"] + v["other"] * 0.25 * t * t)
+
+
+def warped() -> Warped:
+    return Warped()
+
+
+BASE = dict.fromkeys(("n", "east", "west", "other"), 0.0)
+NUISANCES = (coordinate("n"),)
+EFFECTS = {name: Hypothesis(name, (coordinate(name),)) for name in ("east", "west", "other")}
+
+
+def search_of(hidden: Mapping[str, float]) -> Search:
+    return Search(one_landing(tracks(Warped(), {**BASE, **hidden}, ["y"], TIMES, 0.01, 1), (), BASE), NUISANCES, (), Crew(warped))
+
+
+def stuck(search: Search, name: str, z: tuple[float, float]) -> Fit:
+    """A fit that stands where it was put."""
+    model = Model(search.landings, (*NUISANCES, *EFFECTS[name].coordinates), Warped())
+    at = np.array(z)
+    predicted = model.predict(at)
+    assert predicted is not None
+    return seen_from(model, at, predicted, model.slopes(at, predicted))
+
+
+def test_a_rival_takes_over_with_other_nuisances_and_another_sign() -> None:
+    """-west lowers the ground by as much: n must make up for it. The wrong rival stays where it was."""
+    search = search_of({"east": 0.7, "n": 0.2})
+    fits = {n: stuck(search, n, (0.0, 0.0)) for n in ("west", "other")}
+    fits["east"] = search.refine_all([stuck(search, "east", (0.2, 0.7))], "")[0]
+    found = handed_over(search, fits, list(EFFECTS.values()), "east")
+    assert found["west"].z == pytest.approx([0.9, -0.7], abs=0.02)
+    assert found["west"].chi2 == pytest.approx(found["east"].chi2, abs=0.5)
+    assert found["east"] is fits["east"]
+    assert found["other"].log_evidence < found["east"].log_evidence - 20.0
+
+
+def test_what_a_linear_rival_is_promised_is_what_it_gets() -> None:
+    search = search_of({"east": 0.7, "n": 0.2})
+    east = search.refine_all([stuck(search, "east", (0.2, 0.7))], "")[0]
+    for name in ("west", "other"):
+        h = EFFECTS[name]
+        (own,) = search.crew.run([slopes_beside(search.landings, east.coordinates, east.z, east.predicted, h.coordinates)])
+        promised, z = taken_over(search, east, h, own)
+        fitted = search.refine_all([stuck(search, name, (float(z[0]), float(z[1])))], "")[0]
+        assert promised == pytest.approx(fitted.log_evidence, abs=0.3)  # ENOUGH: a step that promises less is not flown
+        assert z == pytest.approx(fitted.z, abs=0.01)
+
+
+def test_nothing_missing_takes_over_too() -> None:
+    """Nothing is hidden, but the fit of nothing missing stands where it should not: an effect would be named for its sake."""
+    search = search_of({"n": 0.2})
+    east = search.refine_all([stuck(search, "east", (0.2, 0.0))], "")[0]
+    model = Model(search.landings, NUISANCES, Warped())
+    at = np.array([-0.5])
+    predicted = model.predict(at)
+    assert predicted is not None
+    null = seen_from(model, at, predicted, model.slopes(at, predicted))
+    assert null.log_evidence < east.log_evidence - 100.0
+    found = handed_over(search, {"east": east, NULL.name: null}, [EFFECTS["east"]], "east")
+    assert found[NULL.name].log_evidence > east.log_evidence
