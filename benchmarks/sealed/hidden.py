@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.effects import Effect
 from orchestrator.diagnosis.fit import fitted, refined
 from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.problem import Landings, Model
+from orchestrator.diagnosis.search import Search, UnflyableError
 from sealed.energy import energy, scaled_to
 from sealed.instruments import observation
 from sealed.scene import STOP, Scene, centred, model_of
@@ -77,16 +79,18 @@ class Signatures:
     def left(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None = None) -> float | None:
         """λ that stays when the nuisances, and an effect `beside` that is none of these, are fitted anew to what the effects do.
 
-        Twice φ at the minimum reached from the true nuisances, without noise, the prior centred on them; what `beside` costs by its own
-        prior counts. Where contacts change order, slopes say something else, mostly more: 24 of friction at one pad (0.005 more) become
-        9.5, 332 of a step become 36.
+        Twice φ at the best minimum, without noise, the prior centred on the true nuisances; what `beside` costs by its own prior counts.
+        The minimum is looked for from the true nuisances, and by the search's own climb from the first contact on: the ground may tilt so
+        that the pads touch as they do with a step. Slopes say something else where contacts change order, mostly more.
         """
-        there = self.flown(effects, z)
-        if there is None:
+        found = [self.from_truth(effects, z, beside), self._by_climb(effects, z, beside)]
+        return min((it for it in found if it is not None), default=None)
+
+    def from_truth(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None = None) -> float | None:
+        """What `left` says of the minimum that is reached from the true nuisances alone: no less."""
+        landings, own = self._explained(effects, z, beside)
+        if landings is None:
             return None
-        own = tuple(self.vehicle.coordinates(beside)) if beside else ()
-        base = {**self.vehicle.base, **(self.vehicle.fixed(beside) if beside else {})}
-        landings = Landings([observation(self.vehicle, self.scene.sampling, there)], [base], [STOP])
         model = Model(landings, (*self.scene.coordinates, *own), self.lander)
         start = np.concatenate([self.scene.z, np.zeros(len(own))])
         mine = range(len(self.scene.z), len(start))
@@ -94,13 +98,33 @@ class Signatures:
         fit = fitted(model, start, slopes, self.predicted)
         return None if fit is None else 2.0 * refined(model, fit).objective
 
+    def _by_climb(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None) -> float | None:
+        landings, own = self._explained(effects, z, beside)
+        if landings is None:
+            return None
+        try:
+            return 2.0 * Search(landings, (*self.scene.coordinates, *own), (), Crew(lambda: self.lander)).base().objective
+        except UnflyableError:
+            return None
+
+    def _explained(
+        self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None
+    ) -> tuple[Landings | None, tuple[Coordinate, ...]]:
+        """What the effects leave, without noise, as data; and the coordinates of the effect beside the nuisances."""
+        there = self.flown(effects, z)
+        own = tuple(self.vehicle.coordinates(beside)) if beside else ()
+        base = {**self.vehicle.base, **(self.vehicle.fixed(beside) if beside else {})}
+        return None if there is None else Landings([observation(self.vehicle, self.scene.sampling, there)], [base], [STOP]), own
+
     def sized_by_what_is_left(self, effect: Effect, target: float, random: Random) -> Hidden | None:
         """The effect in a random direction, so large that nuisances fitted anew leave λ; None where 3 prior sigmas do not reach it."""
         at = self._along(effect, random)
         found = scaled_to(target, lambda k: self.energy([effect], [at(k)]), LARGEST)
         k = found[0] if found else np.inf
         for _ in range(REFITS):
-            left = self.left([effect], [at(k)]) if k <= LARGEST else None
+            left = self.from_truth([effect], [at(k)]) if k <= LARGEST else None
+            if left is not None and abs(left / target - 1.0) <= NEAR:
+                left = self.left([effect], [at(k)])
             if left is None:
                 return None
             if abs(left / target - 1.0) <= NEAR:

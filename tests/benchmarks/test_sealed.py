@@ -95,16 +95,26 @@ def test_nuisances_fitted_anew_leave_what_slopes_say_of_a_linear_effect_and_lowe
     signatures = Signatures(vehicle, scenes_of(vehicle, plan, [9, 1, 0])[0], lander)
     gyro, step = [vehicle.effects["gyro_cross_axis"]], [vehicle.effects["step_-Y"]]
     z = [[1.0] * len(gyro[0].parameters)]
-    by_slopes, left = signatures.energy(gyro, z), signatures.left(gyro, z)
+    by_slopes, left = signatures.energy(gyro, z), signatures.from_truth(gyro, z)
     assert by_slopes is not None
     assert left == pytest.approx(by_slopes, rel=0.08)
-    own = signatures.left(gyro, z, gyro[0])
+    own = signatures.from_truth(gyro, z, gyro[0])
     assert own is not None
     assert 2.0 < own <= 3.0  # what its own prior asks of the effect: z'z = 3, a little less with the nuisances' help
-    whole, fitted = signatures.signature(step, [[0.2]]), signatures.left(step, [[0.2]])
+    whole, fitted = signatures.signature(step, [[0.2]]), signatures.from_truth(step, [[0.2]])
     assert whole is not None
     assert fitted is not None
     assert 0.0 < fitted < 0.8 * float(whole @ whole)
+
+
+@pytest.mark.parametrize(
+    ("nearby", "climbed", "left"), [(59.5, 28.9, 28.9), (9.2, 30.0, 9.2), (None, 4.0, 4.0), (7.0, None, 7.0), (None, None, None)]
+)
+def test_what_is_left_is_the_best_minimum_found(monkeypatch: pytest.MonkeyPatch, nearby: float, climbed: float, left: float) -> None:
+    """The step of the first: ground that tilts explains half of what is left beside the true nuisances."""
+    monkeypatch.setattr(Signatures, "from_truth", lambda *_: nearby)
+    monkeypatch.setattr(Signatures, "_by_climb", lambda *_: climbed)
+    assert Signatures.left(object.__new__(Signatures), [], []) == left
 
 
 def test_nuisances_that_explain_everything_leave_no_energy() -> None:
