@@ -181,8 +181,11 @@ def try_pairs(state: State) -> None:
     if pairs and _ahead(state, pairs) > WORTH_RACING:  # a second effect may have shown the first one alone where to stand
         leader = max(pairs, key=lambda name: state.fits[name].log_evidence)
         state.fits = state.search.back_substituted(state.fits, state.hypotheses, singles, leader)
+        state.fits = handed_over(state.search, state.fits, [known[name] for name in singles], leader)
     if pairs and _ahead(state, pairs) > WORTH_RACING:
         _race_pairs(state)
+        leader = max(pairs, key=lambda name: state.fits[name].log_evidence)
+        state.fits = handed_over(state.search, state.fits, [known[name] for name in singles], leader)
     if _ahead(state, pairs) < OVERTAKES and adequacy(state.fits[singles[0]], state.setup.landings).p >= ADEQUATE:
         state.fits = {name: fit for name, fit in state.fits.items() if name not in pairs}
         state.hypotheses = [h for h in state.hypotheses if h.name not in pairs]

@@ -113,18 +113,22 @@ def test_pairs_are_raced_anew_before_one_is_believed(monkeypatch: Any) -> None:
     monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=1e-6))
     found = {name: (Hypothesis(name, (), ()), fit(objective)) for name, objective in ((WRONG, 30.0), (RIGHT, 35.0))}
     monkeypatch.setattr(stages, "fit_seconds", lambda *_: found)
+    handed: list[Any] = []
+    monkeypatch.setattr(stages, "handed_over", lambda _, fits, known, leader: handed.append(([h.name for h in known], leader)) or fits)
     setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
     hypotheses = [Hypothesis(EFFECT, (), ())]
     state = State(setup, Paired(), fit(100.0), {NULL.name: fit(100.0), EFFECT: fit(60.0)}, hypotheses)  # type: ignore[arg-type]
     try_pairs(state)
     assert min(state.fits, key=lambda name: state.fits[name].objective) == RIGHT
     assert [it.objective for it in heard] == [20.0], "the noise is judged by the best pair"
+    assert handed == [([EFFECT], WRONG), ([EFFECT], RIGHT)], "the first effect alone may do what the pair does"
 
 
 def test_a_second_effect_that_only_shows_where_the_first_should_stand_is_let_go(monkeypatch: Any) -> None:
     """The axes of a gyro stood at 339.9, with a second effect at 329.5: alone, from that one's nuisances, they end at 331.3."""
     monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=0.5))
     monkeypatch.setattr(stages, "fit_seconds", lambda *_: {WRONG: (Hypothesis(WRONG, (), ()), fit(28.0))})
+    monkeypatch.setattr(stages, "handed_over", lambda _, fits, *__: fits)
     setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
     state = State(setup, Shown(), fit(100.0), {NULL.name: fit(100.0), EFFECT: fit(60.0)}, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
     try_pairs(state)
