@@ -83,8 +83,7 @@ class Signatures:
         The minimum is looked for from the true nuisances, and by the search's own climb from the first contact on: the ground may tilt so
         that the pads touch as they do with a step. Slopes say something else where contacts change order, mostly more.
         """
-        found = [self.from_truth(effects, z, beside), self._by_climb(effects, z, beside)]
-        return min((it for it in found if it is not None), default=None)
+        return _least(self.from_truth(effects, z, beside), self._by_climb(effects, z, beside))
 
     def from_truth(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None = None) -> float | None:
         """What `left` says of the minimum that is reached from the true nuisances alone: no less."""
@@ -98,7 +97,7 @@ class Signatures:
         fit = fitted(model, start, slopes, self.predicted)
         return None if fit is None else 2.0 * refined(model, fit).objective
 
-    def _by_climb(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None) -> float | None:
+    def _by_climb(self, effects: Sequence[Effect], z: Sequence[Sequence[float]], beside: Effect | None = None) -> float | None:
         landings, own = self._explained(effects, z, beside)
         if landings is None:
             return None
@@ -123,8 +122,8 @@ class Signatures:
         k = found[0] if found else np.inf
         for _ in range(REFITS):
             left = self.from_truth([effect], [at(k)]) if k <= LARGEST else None
-            if left is not None and abs(left / target - 1.0) <= NEAR:
-                left = self.left([effect], [at(k)])
+            if left is not None and left >= (1.0 - NEAR) * target:  # no more than that: a climb may still find less
+                left = _least(left, self._by_climb([effect], [at(k)]))
             if left is None:
                 return None
             if abs(left / target - 1.0) <= NEAR:
@@ -161,6 +160,10 @@ class Signatures:
         z = [1.0 if i == place else 0.0 for i in range(len(coordinates))]
         signature = self.signature([effect], [z])
         return signature is not None and not signature.any()
+
+
+def _least(*found: float | None) -> float | None:
+    return min((it for it in found if it is not None), default=None)
 
 
 def parameters(vehicle: Vehicle, effect: Effect, z: Sequence[float]) -> dict[str, float]:

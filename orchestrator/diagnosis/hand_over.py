@@ -2,7 +2,7 @@
 
 A rival that looks like the winner only with other nuisances (a step under one pad is one under another on a ground that is tilted
 differently) is found neither from the base fit nor from the winner's nuisances with nothing in its effect's place. The slopes at the
-winner's fit tell how far nuisances and rival must move for the winner's effect to go: one least-squares step, and a fit from there.
+winner's fit tell how far nuisances and rival must move for the winner's effect to go: a least-squares step, and a fit from there.
 """
 
 from __future__ import annotations

@@ -117,6 +117,19 @@ def test_what_is_left_is_the_best_minimum_found(monkeypatch: pytest.MonkeyPatch,
     assert Signatures.left(object.__new__(Signatures), [], []) == left
 
 
+def test_an_effect_is_sized_by_the_climb_where_that_leaves_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twice as much stays beside the true nuisances, at any size: judged by that where it is far off, the sizes go to and fro."""
+    signatures = object.__new__(Signatures)
+    monkeypatch.setattr(Signatures, "_along", lambda *_: lambda k: (k,))
+    monkeypatch.setattr(Signatures, "energy", lambda _, effects, z: 200.0 * z[0][0] ** 2)
+    monkeypatch.setattr(Signatures, "from_truth", lambda _, effects, z: 100.0 * z[0][0] ** 2)
+    monkeypatch.setattr(Signatures, "_by_climb", lambda _, effects, z: 50.0 * z[0][0] ** 2)
+    found = signatures.sized_by_what_is_left(None, 49.0, np.random.default_rng(0))  # type: ignore[arg-type]
+    assert found is not None
+    assert found.energy == pytest.approx(49.0, rel=0.25)
+    assert found.energy == pytest.approx(50.0 * found.z[0][0] ** 2)
+
+
 def test_nuisances_that_explain_everything_leave_no_energy() -> None:
     column = np.array([1.0, 2.0, 2.0])
     assert energy(column, 1e6 * column[:, None]) == pytest.approx(0.0, abs=1e-9)
