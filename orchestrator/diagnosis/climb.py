@@ -2,7 +2,7 @@
 
 The first tenths of a second depend almost linearly on the nuisances; once they are known to that, the next contact comes in the right
 order. Every horizon has minima of its own where the order is wrong: of twelve fits from the best draws three ended in them, at φ = 79 to
-154 beside 21. So many fits climb the first horizon, which is cheap, and the best few of different minima go on.
+154 beside 21. So several fits climb the first horizon, until two that explain it agree, and the best few of different minima go on.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from orchestrator.diagnosis.tasks.fits import Climb, Point
 
 Array = NDArray[np.float64]
 Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
-FIRST = 8  # fits to the first horizon
+FIRST = 8  # fits to the first horizon, at most
+AT_A_TIME, AGREE = 2, 2  # of them that are begun together; so many in one minimum that explains the data are enough
 ABREAST = 2  # of different minima that go on from each horizon
 DRAWS = (20, 1)  # of the posterior of each that goes on, and how many of them are fitted
 BEHIND = 25.0  # of φ: who is further behind the best of a horizon does not go on
@@ -52,8 +53,7 @@ def climbed(
     From where the best leaves more than noise it goes on alone: no minimum of these coordinates will do.
     """
     chosen = tuple(nuisances)
-    begun = run("base fit", [Start(landings, chosen, z, horizons[0]) for z in starts[:FIRST]])
-    paths = distinct([(Rung(*made),) for made in begun if made is not None])[:ABREAST]
+    paths = _begun([Start(landings, chosen, z, horizons[0]) for z in starts[:FIRST]], counted(landings, horizons[0]), run)
     for horizon in horizons[1:]:
         paths = paths if not paths or explains(paths[0][-1].fit.chi2, counted(landings, paths[0][-1].point.horizon)) else paths[:1]
         drawn = run("base fit", [Draw(landings, path[-1].fit, horizon, *DRAWS) for path in paths])
@@ -62,6 +62,17 @@ def climbed(
         higher = [(*path, Rung(point, fit)) for (path, point), fit in zip(pairs, ends, strict=True) if fit is not None]
         paths = distinct(higher)[:ABREAST]
     return paths
+
+
+def _begun(starts: Sequence[Start], count: float, run: Run) -> list[Path]:
+    """Fits to the first horizon, the best first: as many as it takes for several to agree. count: readings there."""
+    made: list[Path] = []
+    for i in range(0, len(starts), AT_A_TIME):
+        made += [(Rung(*one),) for one in run("base fit", starts[i : i + AT_A_TIME]) if one is not None]
+        best = min(made, key=lambda path: path[0].fit.objective, default=())
+        if best and explains(best[0].fit.chi2, count) and sum(_same(path[0].fit, best[0].fit) for path in made) >= AGREE:
+            break
+    return distinct(made)[:ABREAST]
 
 
 def counted(landings: Landings, horizon: float) -> float:

@@ -7,7 +7,7 @@ winner's fit tell how far nuisances and rival must move for the winner's effect 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,13 +33,19 @@ def handed_over(search: Search, fits: dict[str, Fit], hypotheses: Sequence[Hypot
     others = [h for h in (*hypotheses, NULL) if h.name != winner and h.name in fits]
     taken = offers(search, best, others)
     worth = [h for h in others if taken[h.name][0] > fits[h.name].log_evidence + WORTH]
-    takers = sorted(worth, key=lambda h: -taken[h.name][0])[:TAKERS]
+    ends = begun_there(search, best, worth, taken)
+    found = {name: fit for name, fit in ends.items() if fit.log_evidence > best.log_evidence - BEHIND}
+    return search.if_better(fits, found, STAGE)
+
+
+def begun_there(search: Search, best: Fit, rivals: Sequence[Hypothesis], taken: Mapping[str, tuple[float, Array]]) -> dict[str, Fit]:
+    """Fits of the TAKERS that promise most, from where the best fit's effect has gone over to them. taken: what `offers` says."""
+    takers = sorted(rivals, key=lambda h: -taken[h.name][0])[:TAKERS]
     count = len(search.nuisances)
     here = Point(best.z[:count], best.predicted, best.slopes[:, :count], np.inf)
     tasks = [FitAt(search.landings, (*search.nuisances, *h.coordinates), here, taken[h.name][1], 5, search.fresh) for h in takers]
     ends = zip(takers, search.run(STAGE, tasks), strict=True)
-    found = {h.name: fit for h, fit in ends if fit is not None and fit.log_evidence > best.log_evidence - BEHIND}
-    return search.if_better(fits, found, STAGE)
+    return {h.name: fit for h, fit in ends if fit is not None}
 
 
 def offers(search: Search, fit: Fit, rivals: Sequence[Hypothesis]) -> dict[str, tuple[float, Array]]:
@@ -65,4 +71,4 @@ def taken_over(search: Search, fit: Fit, rival: Hypothesis, own: Array) -> tuple
     return log_evidence(coordinates, z, residual, jacobian), z
 
 
-__all__ = ["handed_over", "offers", "taken_over"]
+__all__ = ["begun_there", "handed_over", "offers", "taken_over"]

@@ -102,15 +102,20 @@ class Search:
     # Hypotheses
 
     def fit_all(self, hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis' own fit, the best refined: from the base fit; where none explains the data, in a race."""
+        """Every hypothesis' own fit from the base fit, the best refined."""
         here = point_of(base)
-        explained = self.explained()
-        if explained == len(self.path) or explains(base.chi2, self.landings.size):
+        if self.explained() == len(self.path) or explains(base.chi2, self.landings.size):
             return self._refined(self.probed(hypotheses, here, "hypotheses"), base)
         tasks = [self._at(self.landings, h, here, np.zeros(len(h.coordinates))) for h in hypotheses]
-        fits = self._refined(self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks)), base)
-        if any(explains(fit.chi2, self.landings.size) for fit in fits.values()):
-            return fits
+        return self._refined(self._best_of([h.name for h in hypotheses], self.run("hypotheses", tasks)), base)
+
+    def explained_by(self, fits: Mapping[str, Fit]) -> bool:
+        """Whether any of the fits leaves no more than noise."""
+        return any(explains(fit.chi2, self.landings.size) for fit in fits.values())
+
+    def race(self, hypotheses: Sequence[Hypothesis], fits: Mapping[str, Fit], base: Fit) -> dict[str, Fit]:
+        """Every hypothesis from the horizon on that the base scenario explained last, where none of their fits explains the data."""
+        explained = self.explained()
         raced = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
         best = self._best_of([h.name for h, _ in raced], [fit for _, fit in raced])
         if not (raced and explains(raced[0][1].chi2, self.landings.size)):
@@ -140,12 +145,10 @@ class Search:
         return fits | dict(zip(top, self.refine_all([fits[n] for n in top], "finalists"), strict=True))
 
     def fit_once(self, hypothesis: Hypothesis, base: Fit, stage: str) -> Fit | None:
-        """One hypothesis raced from the first horizon on, or else fitted from the base fit, and refined; None where it cannot be flown."""
-        found = [fit for _, fit in self._raced([hypothesis], 1)] if len(self.path) > 1 else []
-        if not found:
-            at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
-            found = [fit for fit in self.run(stage, [at_base]) if fit is not None]
-        return self.refine_all(found[:1], stage)[0] if found else None
+        """One hypothesis fitted from the base fit and refined; None where it cannot be flown."""
+        at_base = self._at(self.landings, hypothesis, point_of(base), np.zeros(len(hypothesis.coordinates)))
+        found = [fit for fit in self.run(stage, [at_base]) if fit is not None]
+        return self.refine_all(found, stage)[0] if found else None
 
     def raced_anew(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], base: Fit) -> dict[str, Fit]:
         """The best once more, from the first horizon on, where little holds them fast; unless one leads."""

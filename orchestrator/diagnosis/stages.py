@@ -110,14 +110,21 @@ def _heard(observation: Observation, predicted: Array, rest: float, followed: fl
 
 
 def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypotheses: Sequence[Hypothesis]) -> State:
-    """Base, every hypothesis, the best refined, null and rivals once more from the winner's nuisances."""
+    """Base, every hypothesis, the best refined, null and rivals once more from the winner's nuisances.
+
+    Where no effect explains the data from the base fit on, the best is handed over to the others, and where that does not help, they race.
+    """
     search = Search(setup.landings, setup.nuisances, setup.tolerances, crew, seed, told)
     base = search.base()
     courses = hear_noise(setup, crew, base)
     base = search.refine_all([renoised(setup.landings, base)], "base fit")[0]
-    state = State(setup, search, base, hypotheses=list(hypotheses), courses=courses)
-    fits = search.fit_all(hypotheses, base)
-    state.fits = search.refine_best(search.raced_anew(fits, hypotheses, base) | {NULL.name: base})
+    fits = search.fit_all(hypotheses, base) | {NULL.name: base}
+    state = State(setup, search, base, fits, list(hypotheses), courses)
+    if not search.explained_by(state.fits):
+        _hand_over(state)
+    if not search.explained_by(state.fits):
+        state.fits |= search.race(hypotheses, state.fits, base)
+    state.fits = search.refine_best(state.fits)
     _substitute(state)
     misled = base.objective > state.fits[NULL.name].objective + MISLED
     _rehear(state, crew)
@@ -135,6 +142,10 @@ def _substitute(state: State) -> None:
         return
     rivals = [n for n in ranked[1:4] if n != NULL.name]
     state.fits = state.search.back_substituted(state.fits, state.hypotheses, [NULL.name, *rivals], ranked[0])
+    _hand_over(state)
+
+
+def _hand_over(state: State) -> None:
     for _ in range(HAND_OVERS):
         winner = _ranked(state)[0]
         if winner == NULL.name:

@@ -68,17 +68,25 @@ def test_the_more_probable_of_both_is_said(
 
 
 @pytest.mark.parametrize(
-    ("evidence", "promised", "asked"),
-    [(30.0, 16.0, True), (30.0, 14.0, False), (200.0, 155.0, True), (200.0, 145.0, False)],  # 15 behind, or a quarter
+    ("evidence", "promised", "fitted", "asked"),
+    [
+        (30.0, 16.0, 16.0, True),
+        (30.0, 14.0, 16.0, False),  # 15 behind: not fitted
+        (30.0, 16.0, 14.0, False),
+        (200.0, 155.0, 155.0, True),  # a quarter behind
+        (200.0, 145.0, 155.0, False),
+    ],
 )
 def test_terms_are_regressed_beside_a_name_only_where_one_could_take_over(
-    monkeypatch: Any, evidence: float, promised: float, asked: bool
+    monkeypatch: Any, evidence: float, promised: float, fitted: float, asked: bool
 ) -> None:
     state = state_of({NULL.name: 0.0, "damping": evidence})
     term = SimpleNamespace(equals="")
     monkeypatch.setattr(find_term, "dictionary", dict)
     monkeypatch.setattr(find_term, "in_scenario", lambda *_: {TERM.name: (term, TERM)})
     monkeypatch.setattr(find_term, "offers", lambda search, fit, rivals: {h.name: (promised, None) for h in rivals})
+    ends = SimpleNamespace(log_evidence=fitted)
+    monkeypatch.setattr(find_term, "begun_there", lambda search, fit, rivals, _: {h.name: ends for h in rivals})
     regressed: list[Any] = []
     monkeypatch.setattr(find_term, "regressed", lambda regression, *_: regressed.append(regression))
     setup: Any = SimpleNamespace(why_slow="", addresses=None)

@@ -66,8 +66,8 @@ class Scripted:
     def fit_all(self, *_: Any) -> dict[str, Any]:
         return {EFFECT: fit(60.0)}
 
-    def raced_anew(self, fits: dict[str, Any], *_: Any) -> dict[str, Any]:
-        return fits
+    def explained_by(self, _: Any) -> bool:
+        return True
 
     def refine_best(self, fits: dict[str, Any]) -> dict[str, Any]:
         return fits
@@ -133,6 +133,39 @@ def test_a_second_effect_that_only_shows_where_the_first_should_stand_is_let_go(
     state = State(setup, Shown(), fit(100.0), {NULL.name: fit(100.0), EFFECT: fit(60.0)}, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
     try_pairs(state)
     assert {name: it.objective for name, it in state.fits.items()} == {NULL.name: 100.0, EFFECT: 29.5}
+
+
+class Racing(Scripted):
+    """Nothing explains the data until as much has been tried as `explains_after` says."""
+
+    explains_after = 0
+    tried: list[str]
+
+    def __init__(self, *_: Any) -> None:
+        super().__init__()
+        type(self).tried = []
+
+    def explained_by(self, _: Any) -> bool:
+        return len(self.tried) >= self.explains_after
+
+    def race(self, _: Any, fits: dict[str, Any], __: Any) -> dict[str, Any]:
+        self.tried.append("race")
+        return {EFFECT: fits[EFFECT]}
+
+
+@pytest.mark.parametrize(("after", "tried"), [(0, []), (1, ["hand-over"]), (2, ["hand-over", "race"])])
+def test_effects_race_where_neither_they_nor_a_hand_over_explain_the_data(monkeypatch: Any, after: int, tried: list[str]) -> None:
+    monkeypatch.setattr(stages, "Search", Racing)
+    monkeypatch.setattr(Racing, "explains_after", after)
+    monkeypatch.setattr(stages, "hear_noise", lambda *_, **__: [])
+    monkeypatch.setattr(stages, "renoised", lambda _, it: it)
+    monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=0.5))
+    monkeypatch.setattr(stages, "_substitute", lambda _: None)
+    monkeypatch.setattr(stages, "handed_over", lambda search, fits, *_: search.tried.append("hand-over") or fits)
+    setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
+    state = run_search(setup, None, 0, None, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
+    assert Racing.tried == tried
+    assert set(state.fits) == {NULL.name, EFFECT}
 
 
 def fit(objective: float) -> Any:

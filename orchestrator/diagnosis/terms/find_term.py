@@ -10,7 +10,7 @@ import numpy as np
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
-from orchestrator.diagnosis.hand_over import offers
+from orchestrator.diagnosis.hand_over import begun_there, offers
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.outcome import Estimate
 from orchestrator.diagnosis.pairs import fit_seconds
@@ -56,9 +56,11 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
 
 
 def _could_take_over(search: Search, best: Fit, terms: Sequence[Hypothesis], beat: float) -> bool:
-    """Whether the slopes at the best fit promise of any term that it does nearly as well in the place of the effect."""
+    """Whether any term does nearly as well in the place of the best fit's effect: by the slopes there, and fitted from where they lead."""
     least = best.log_evidence - max(COULD[0], COULD[1] * beat)
-    return any(promised > least for promised, _ in offers(search, best, terms).values())
+    promised = offers(search, best, terms)
+    near = [h for h in terms if promised[h.name][0] > least]
+    return any(fit.log_evidence > least for fit in begun_there(search, best, near, promised).values())
 
 
 def adopt(state: State, found: Found) -> None:

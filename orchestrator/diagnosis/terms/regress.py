@@ -129,7 +129,9 @@ def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Se
         return None
     regression.keep(search.probed([regression.hypotheses[n] for n in first], here, "terms"))
     if not explains(base.chi2, search.landings.size):
-        regression.keep(search.fit_all([regression.hypotheses[n] for n in first[:CLIMBING]], base))
+        few = [regression.hypotheses[n] for n in first[:CLIMBING]]
+        fits = search.fit_all(few, base)
+        regression.keep(fits if search.explained_by(fits) else search.race(few, fits, base))
     if regression.best(offered) is None:
         return None
     _refine(regression, offered)
