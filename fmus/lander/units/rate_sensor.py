@@ -2,11 +2,11 @@
 
 from math import exp, floor
 
-import numpy as np
-
 from ..shell import Unit, input_, nanoseconds, output, parameter, state
 
 AXES = ("yaw", "pitch", "roll")
+RATES = tuple((f"rates.{axis}", f"rates.{axis}_slope") for axis in AXES)
+TELEMETRY = tuple(f"telemetry.{axis}" for axis in AXES)
 
 
 class RateSensor(Unit):
@@ -72,14 +72,13 @@ class RateSensor(Unit):
     def advance(self, time: float, step: float) -> None:
         interval = nanoseconds(self.value("sample_interval"))
         now, end = nanoseconds(time - self.start_time), nanoseconds(time + step - self.start_time)
-        lagged, held = self["lagged"], self["held"]
         count = end // interval if interval else 0  # samples due after the first one, which is at the start
         instant = (count * interval - now) * 1e-9
-        for i, axis in enumerate(AXES):
-            u, k = self.value(f"rates.{axis}"), self.value(f"rates.{axis}_slope")
-            if interval and count >= self.value("samples"):
-                held[i] = self.after(lagged[i], u, k, instant)
-            lagged[i] = self.after(lagged[i], u, k, step)
+        lagged, held = self["lagged"], self["held"]
+        before = [(y, self.value(u), self.value(k)) for y, (u, k) in zip(lagged.tolist(), RATES, strict=True)]
+        if interval and count >= self.value("samples"):
+            held[:] = [self.after(y, u, k, instant) for y, u, k in before]
+        lagged[:] = [self.after(y, u, k, step) for y, u, k in before]
         if not interval:
             held[:] = lagged
         self["samples"] = max(self.value("samples"), count + 1.0)
@@ -100,9 +99,10 @@ class RateSensor(Unit):
 
     def show(self) -> None:
         """Fill the outputs from the held samples."""
-        scale, quantum, held = self.value("scale"), self.value("quantum"), self["held"]
-        if self["misalignment"].any():
-            held = held + np.cross(self["misalignment"], held)
-        for i, axis in enumerate(AXES):
-            z = scale * held[i] + self["bias"][i]
-            self[f"telemetry.{axis}"] = quantum * floor(z / quantum + 0.5) if quantum > 0.0 else z
+        scale, quantum, held, (a, b, c) = self.value("scale"), self.value("quantum"), self["held"].tolist(), self["misalignment"].tolist()
+        if a or b or c:
+            x, y, z = held
+            held = [x + (b * z - c * y), y + (c * x - a * z), z + (a * y - b * x)]
+        for name, rate, bias in zip(TELEMETRY, held, self["bias"].tolist(), strict=True):
+            received = scale * rate + bias
+            self[name] = quantum * floor(received / quantum + 0.5) if quantum > 0.0 else received
