@@ -114,13 +114,11 @@ class Search:
         return any(explains(fit.chi2, self.landings.size) for fit in fits.values())
 
     def race(self, hypotheses: Sequence[Hypothesis], fits: Mapping[str, Fit], base: Fit) -> dict[str, Fit]:
-        """Every hypothesis from the horizon on that the base scenario explained last, where none of their fits explains the data."""
+        """Fits that are better from the horizon on that the base scenario explained last: where none explains the data."""
         explained = self.explained()
         raced = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
         best = self._best_of([h.name for h, _ in raced], [fit for _, fit in raced])
-        if not (raced and explains(raced[0][1].chi2, self.landings.size)):
-            best |= {n: fit for n, fit in fits.items() if n not in best or fit.objective < best[n].objective}
-        return self._refined(best, base)
+        return self._refined({**fits, **_better(best, fits)}, base)
 
     def probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
         """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""

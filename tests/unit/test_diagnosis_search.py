@@ -1,6 +1,7 @@
 """The whole search on a landing that is a formula: it names what was put in, and is not caught where nuisances hide it."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -71,6 +72,18 @@ def test_a_library_without_effects_leaves_the_base_fit_alone(missing: Mapping[st
     search = Search(ringing_landing({**HIDDEN, **missing}, seed=1), NUISANCES, (), Crew(ringing))
     base = search.base()
     assert search.raced_anew(search.fit_all([], base), [], base) == {}
+
+
+def test_a_race_leaves_whoever_stood_better_before_where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    search = Search(ringing_landing({**HIDDEN, "drag": 0.4, "bias": 0.5}, seed=1), NUISANCES, (), Crew(ringing))
+    base = search.base()
+    fits = search.fit_all(EFFECTS, base)
+    assert not search.explained_by(fits)
+    monkeypatch.setattr(search, "refine_all", lambda fits, _: fits)
+    low, high = replace(fits["lift"], residual=0.0 * fits["lift"].residual), replace(fits["drag"], residual=2.0 * fits["drag"].residual)
+    raced = search.race(EFFECTS, {**fits, "lift": low, "drag": high}, base)
+    assert raced["lift"] is low
+    assert raced["drag"].objective < high.objective
 
 
 class Refused(Ringing):
