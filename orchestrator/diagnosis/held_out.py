@@ -43,7 +43,7 @@ def ask_holdouts(
     for name in names:
         own = posterior_of(state.fits[name], len(state.search.nuisances))
         fit = search.fit_once(Hypothesis(name, tuple(own)), null, STAGE)
-        fit = fit if fit is not None and adequacy(fit, held.landings).p >= ADEQUATE else climbed_with(held, own, crew, seed, told)
+        fit = climbed_with(held, own, crew, seed, told) if fit is None or adequacy(fit, held.landings).p < ADEQUATE else fit
         if fit is not None:
             null, fits[name] = exchanged(search, null, fit)
     if fits:

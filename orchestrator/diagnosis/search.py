@@ -113,12 +113,12 @@ class Search:
         """Whether any of the fits leaves no more than noise."""
         return any(explains(fit.chi2, self.landings.size) for fit in fits.values())
 
-    def race(self, hypotheses: Sequence[Hypothesis], fits: Mapping[str, Fit], base: Fit) -> dict[str, Fit]:
-        """Fits that are better from the horizon on that the base scenario explained last: where none explains the data."""
+    def race(self, hypotheses: Sequence[Hypothesis], fits: dict[str, Fit], base: Fit) -> dict[str, Fit]:
+        """The fits, those replaced that end better from the horizon on that the base explained last: where none explains the data."""
         explained = self.explained()
         raced = self._raced(hypotheses, explained - 1 if explained > 1 else explained)
         best = self._best_of([h.name for h, _ in raced], [fit for _, fit in raced])
-        return self._refined({**fits, **_better(best, fits)}, base)
+        return self._refined(fits | _better(best, fits), base)
 
     def probed(self, hypotheses: Sequence[Hypothesis], here: Point, stage: str) -> dict[str, Fit]:
         """From nuisances that explain the data or nearly so, and from beyond what they may have absorbed."""
@@ -223,7 +223,7 @@ def renoised(landings: Landings, fit: Fit) -> Fit:
     return seen_from(Model(landings, fit.coordinates, Nobody()), fit.z, fit.predicted, fit.slopes)
 
 
-def _better(found: Mapping[str, Fit | None], fits: Mapping[str, Fit]) -> dict[str, Fit]:
+def _better(found: Mapping[str, Fit | None], fits: dict[str, Fit]) -> dict[str, Fit]:
     """Those that are better by more than what the integrator leaves to chance."""
     return {n: f for n, f in found.items() if f is not None and (n not in fits or f.objective < fits[n].objective - LEAST)}
 

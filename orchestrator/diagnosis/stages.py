@@ -123,7 +123,7 @@ def run_search(setup: Setup, crew: Crew, seed: int, told: Told | None, hypothese
     if not search.explained_by(state.fits):
         _hand_over(state)
     if not search.explained_by(state.fits):
-        state.fits |= search.race(hypotheses, state.fits, base)
+        state.fits = search.race(hypotheses, state.fits, base)
     state.fits = search.refine_best(state.fits)
     _substitute(state)
     misled = base.objective > state.fits[NULL.name].objective + MISLED

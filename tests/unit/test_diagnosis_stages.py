@@ -150,7 +150,7 @@ class Racing(Scripted):
 
     def race(self, _: Any, fits: dict[str, Any], __: Any) -> dict[str, Any]:
         self.tried.append("race")
-        return {EFFECT: fits[EFFECT]}
+        return fits
 
 
 @pytest.mark.parametrize(("after", "tried"), [(0, []), (1, ["hand-over"]), (2, ["hand-over", "race"])])

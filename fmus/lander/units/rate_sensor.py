@@ -22,7 +22,7 @@ class RateSensor(Unit):
     """
 
     description = "Telemetry of the body's rates: lag, bias, scale, sampling and quantisation."
-    required = (*(f"rates.{axis}" for axis in AXES), *(f"telemetry.{axis}" for axis in AXES))
+    required = (*(rate for rate, _ in RATES), *TELEMETRY)
     variables = (
         parameter("time_constant", 0.0, "s", "time constant of the first-order lag", minimum=0.0),
         parameter("sample_interval", 0.0, "s", "time between samples, 0: continuous", minimum=0.0, maximum=1e6),
@@ -100,7 +100,7 @@ class RateSensor(Unit):
     def show(self) -> None:
         """Fill the outputs from the held samples."""
         scale, quantum, held, (a, b, c) = self.value("scale"), self.value("quantum"), self["held"].tolist(), self["misalignment"].tolist()
-        if a or b or c:
+        if a or b or c:  # φ x y written out: numpy's cross product took half of a step
             x, y, z = held
             held = [x + (b * z - c * y), y + (c * x - a * z), z + (a * y - b * x)]
         for name, rate, bias in zip(TELEMETRY, held, self["bias"].tolist(), strict=True):

@@ -40,3 +40,15 @@ def test_a_lag_delays_a_step_as_first_order_does(piece: Piece) -> None:
     yaw = received(piece, {"yaw": 0.4}, stop=1.0, step=0.01, time_constant=0.2)[:, 0]
     for t in (0.1, 0.2, 0.5, 1.0):
         assert yaw[round(t / 0.01) - 1] == pytest.approx(0.4 * (1.0 - exp(-t / 0.2)), abs=0.008)
+
+
+@pytest.mark.parametrize("about", range(3))
+def test_a_small_rotation_of_the_axes_adds_its_cross_product_with_the_rates(piece: Piece, about: int) -> None:
+    """φ about X and a rate about Y give φ times it about Z, and so round; the rates are yaw about X, pitch about Y, roll about Z."""
+    if not piece.has("misalignment[1]"):
+        pytest.skip("has no parameter misalignment")
+    turning, turned = (about + 1) % 3, (about + 2) % 3
+    last = received(piece, {AXES[turning]: 0.4}, stop=0.1, **{f"misalignment[{about + 1}]": 0.05})[-1]
+    expected = np.zeros(3)
+    expected[turning], expected[turned] = 0.4, 0.02
+    assert last == pytest.approx(expected, abs=1e-12)  # rounding of numbers below 1
