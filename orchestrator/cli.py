@@ -34,6 +34,7 @@ app = typer.Typer(add_completion=False, no_args_is_help=True, help=ABOUT)
 ScenarioName = Annotated[str, typer.Argument(help="A scenario file, the bare name of one in scenarios/, or an .ssp.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated; the unit may be a glob.")]
 Variant = Annotated[str, typer.Option("--variant", help="Which system of an .ssp that holds several.")]
+Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures, or write tables alone.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no table.")]
 
 
@@ -46,6 +47,7 @@ def run(
     tolerance: Annotated[float | None, typer.Option(help="m; error allowed per step, instead of the scenario's.")] = None,
     checkpoint_every: Annotated[float | None, typer.Option(help="s simulated between checkpoints, from which `resume` goes on.")] = None,
     variant: Variant = "",
+    figures: Figures = True,
     quiet: Quiet = False,
 ) -> None:
     """Run a scenario and write its results."""
@@ -64,16 +66,17 @@ def run(
     simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes, variant), path))
     if schedule is None:
         clear(folder / FOLDER)
-    simulation.on_hang = _leaving(folder, quiet)
+    simulation.on_hang = _leaving(folder, figures, quiet)
     with _watched(simulation, quiet) as on_step:
         result = simulation.run(on_step, schedule)
-    _report(result, folder, quiet)
+    _report(result, folder, figures, quiet)
 
 
 @app.command()
 def resume(
     directory: Annotated[Path, typer.Argument(help="Folder of a run made with --checkpoint-every.")],
     stop_time: Annotated[float | None, typer.Option(help="s; instead of the run's.")] = None,
+    figures: Figures = True,
     quiet: Quiet = False,
 ) -> None:
     """Go on from a run's newest checkpoint, to the files the uninterrupted run would have written."""
@@ -85,18 +88,18 @@ def resume(
     for note in checkpoint.notes:
         _complain("warning", note)
     simulation = Simulation(checkpoint.blueprint)
-    simulation.on_hang = _leaving(directory, quiet)
+    simulation.on_hang = _leaving(directory, figures, quiet)
     with _watched(simulation, quiet) as on_step:
         result = simulation.resume(checkpoint.snapshot, on_step, Schedule.continued(directory, checkpoint))
-    _report(result, directory, quiet)
+    _report(result, directory, figures, quiet)
 
 
-def _report(result: RunResult, folder: Path, quiet: bool) -> None:
+def _report(result: RunResult, folder: Path, figures: bool, quiet: bool) -> None:
     """Write the results, tell of them, and end with the exit code they deserve."""
     from orchestrator import results
     from orchestrator.simulation import fault
 
-    summary = results.write(result, folder)
+    summary = results.write(result, folder, figures)
     if not quiet:
         Console().print(results.terminal_table(summary))
     for warning in result.warnings:
@@ -109,12 +112,12 @@ def _report(result: RunResult, folder: Path, quiet: bool) -> None:
         raise error
 
 
-def _leaving(folder: Path, quiet: bool) -> Callable[[RunResult], None]:
+def _leaving(folder: Path, figures: bool, quiet: bool) -> Callable[[RunResult], None]:
     """For a unit that hangs: report from the watchdog's thread and leave, since nobody else will come back to do it."""
 
     def leave(result: RunResult) -> None:
         try:
-            _report(result, folder, quiet)
+            _report(result, folder, figures, quiet)
         except OrchestratorError as error:
             _complain("error", str(error))
         finally:

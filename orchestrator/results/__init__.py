@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 __all__ = ["terminal_table", "write"]
 
 
-def write(result: "RunResult", out: Path) -> dict[str, Any]:
-    """Write everything the run has, complete or not, into `out` and return what summary.json holds."""
+def write(result: "RunResult", out: Path, figures: bool = True) -> dict[str, Any]:
+    """Write everything the run has, complete or not, into `out` and return what summary.json holds; figures: the pictures, too."""
     from orchestrator.results import writer
 
-    return writer.write(result, out)
+    return writer.write(result, out, figures)
 
 
 def terminal_table(summary: Mapping[str, Any]) -> "RenderableType":

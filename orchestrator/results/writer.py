@@ -5,22 +5,18 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from matplotlib.figure import Figure
-
 from orchestrator.errors import ScenarioError
 from orchestrator.master.result import RunResult
-from orchestrator.results import comparison, cost, history, plot_landing, plot_run, plot_style, plot_terrain, provenance, references
-from orchestrator.results.channels import Array, Channels
+from orchestrator.results import comparison, cost, history, provenance, references
+from orchestrator.results.channels import Channels
 from orchestrator.results.energy import EnergyAccount, account_of
 from orchestrator.results.failure import failure
 from orchestrator.results.generic import generic, report
 from orchestrator.results.schema import ResultsTable, read
 from orchestrator.results.touchdown import touchdown
-from orchestrator.terrain.ground import ground_of
 
 
-def write(result: RunResult, out: Path) -> dict[str, Any]:
+def write(result: RunResult, out: Path, figures: bool = True) -> dict[str, Any]:
     """Write everything the run has, complete or not, into `out` and return what summary.json holds."""
     out.mkdir(parents=True, exist_ok=True)
     history.write_csv(result, out / "history.csv")
@@ -39,7 +35,13 @@ def write(result: RunResult, out: Path) -> dict[str, Any]:
     if summary["comparison"] is not None:
         text = comparison.markdown(_title(result), summary, summary["comparison"], published)
         (out / "comparison.md").write_text(text, encoding="utf-8")
-    _draw(result, channels, table, account, summary, out / "figures")
+    if figures:
+        from orchestrator.results.figures import draw  # with matplotlib: half the time of a short run
+
+        draw(_title(result), result, channels, table, account, summary, out / "figures")
+    else:
+        for old in (out / "figures").glob("*.png"):  # of an earlier run: they show other data
+            old.unlink()
     return summary
 
 
@@ -105,32 +107,3 @@ def _published(result: RunResult, table: ResultsTable, out: Path) -> references.
     if path.resolve() != (out / path.name).resolve():
         shutil.copyfile(path, out / path.name)
     return references.load(path)
-
-
-def _draw(
-    result: RunResult, channels: Channels, table: ResultsTable, account: EnergyAccount | None, summary: dict[str, Any], folder: Path
-) -> None:
-    """Every figure there is data for; a curve needs two rows."""
-    title, contacts = _title(result), summary.get("contact_times_s", {})
-    figures: dict[str, Figure | None] = {}
-    if len(result.times) > 1:
-        if table.resolved_kind == "touchdown":
-            figures["motion"] = plot_landing.motion(title, channels, table, contacts)
-            figures["pads"] = plot_landing.pads(title, channels, table, contacts)
-            ground = ground_of(result.unit_records)
-            figures["terrain"] = None if ground is None else plot_terrain.terrain(title, channels, table, contacts, ground)
-            figures["struts"] = plot_landing.struts(title, channels, table, contacts)
-        figures["report"] = plot_run.reported(title, channels, table)
-        figures["energy"] = plot_run.energy(title, result.times, account, contacts) if account else None
-    if result.log:
-        figures["intervals"] = plot_run.intervals(title, *_attempts(result), contacts)
-    folder.mkdir(exist_ok=True)
-    for name, figure in figures.items():
-        if figure is not None:
-            plot_style.save(figure, folder / f"{name}.png")
-
-
-def _attempts(result: RunResult) -> tuple[Array, Array, Array]:
-    """Ends (s), lengths (s) and acceptance (1 or 0) of the attempted intervals."""
-    rows = np.array([(row.time + row.interval, row.interval, row.accepted) for row in result.log], dtype=np.float64)
-    return rows[:, 0], rows[:, 1], rows[:, 2]

@@ -92,6 +92,15 @@ def test_every_figure_is_a_picture(written):
     assert all(width > 1000 and height > 500 for width, height in pictures.values())
 
 
+def test_without_figures_those_of_an_earlier_run_go(tmp_path):
+    (tmp_path / "figures").mkdir()
+    for name in ("motion.png", "notes.txt"):
+        (tmp_path / "figures" / name).write_text("of an earlier run", encoding="utf-8")
+    write(landing(3), tmp_path, figures=False)
+    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["notes.txt"]
+    assert (tmp_path / "history.csv").is_file()
+
+
 @pytest.mark.parametrize("rows", [0, 1, 2])
 def test_a_run_that_stopped_early_leaves_what_it_has(rows, tmp_path):
     result = landing(rows, complete=False, trusted=False, interrupted=True, message="interrupted at 0.0 s")

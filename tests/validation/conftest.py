@@ -48,7 +48,7 @@ def landing(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Landing]:
         key = (scenario, *words)
         if key not in made:
             folder = tmp_path_factory.mktemp(scenario)
-            done = orchestrator("run", f"scenarios/{scenario}.toml", "--out", folder, *words)
+            done = orchestrator("run", f"scenarios/{scenario}.toml", "--out", folder, "--no-figures", *words)
             assert done.returncode == 0, done.stderr
             made[key] = Landing(folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")))
         return made[key]

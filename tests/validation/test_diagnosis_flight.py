@@ -233,7 +233,7 @@ def test_the_revised_scenario_runs_from_the_command_line(zupp: CoSimulation, tmp
     short = tmp_path / "short.toml"
     short.write_text('extends = "diagnosis/revised.toml"\nstop_time = 0.25\n', encoding="utf-8")
     assert revised.name == "revised.toml"
-    done = orchestrator("run", short, "--out", tmp_path / "run")
+    done = orchestrator("run", short, "--out", tmp_path / "run", "--no-figures")
     assert done.returncode == 0, done.stderr
     summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
     assert summary["complete"]

@@ -54,7 +54,7 @@ def twin(place: str, values: dict[str, Any]) -> str:
 def run(folder: Path, name: str, text: str, body: str) -> tuple[Array, Array]:
     """Times and rates, deg/s."""
     (folder / f"{name}.toml").write_text(f'title = "{name}"\n{text}', encoding="utf-8")
-    done = orchestrator("run", folder / f"{name}.toml", "--out", folder / name)
+    done = orchestrator("run", folder / f"{name}.toml", "--out", folder / name, "--no-figures")
     assert done.returncode == 0, done.stderr
     landing = Landing(folder / name, {})
     return landing.series("time"), np.degrees([landing.series(f"{body}.{rate}") for rate in RATES])

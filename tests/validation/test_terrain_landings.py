@@ -21,12 +21,12 @@ boulders = [{{ center = [-5.2, -0.8], radius = 0.4, height = 0.15 }}]
 """
 
 
-def landed(folder: Path, text: str, base: str = "apollo11_zupp") -> Landing:
+def landed(folder: Path, text: str, base: str = "apollo11_zupp", figures: str = "--no-figures") -> Landing:
     """1.5 s of a landing on the scenario with a text laid over it."""
     case = folder / f"{base}_{len(list(folder.iterdir()))}.toml"
     case.write_text(f'extends = "{ROOT / "scenarios" / base}.toml"\nfmus = "{ROOT / "build" / "fmus"}"\nstop_time = 1.5\n{text}', "utf-8")
     out = folder / case.stem
-    done = orchestrator("run", case, "--out", out, "--quiet")
+    done = orchestrator("run", case, "--out", out, "--quiet", figures)
     assert done.returncode == 0, done.stderr
     return Landing(out, json.loads((out / "summary.json").read_text("utf-8")))
 
@@ -76,8 +76,8 @@ def test_the_co_simulation_follows_its_twin_on_a_height_map_with_crater_and_boul
 
 @pytest.mark.slow
 def test_a_run_on_a_map_repeats_from_its_own_directory_to_the_bit(tmp_path: Path) -> None:
-    first = landed(tmp_path, SITE)
-    done = orchestrator("run", first.folder / "scenario.toml", "--out", tmp_path / "again", "--quiet", "--stop-time", "0.3")
+    first = landed(tmp_path, SITE, figures="--figures")
+    done = orchestrator("run", first.folder / "scenario.toml", "--out", tmp_path / "again", "--quiet", "--no-figures", "--stop-time", "0.3")
     assert done.returncode == 0, done.stderr
     again = Landing(tmp_path / "again", {})
     rows = len(again.series("time")) - 1

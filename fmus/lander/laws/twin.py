@@ -147,7 +147,7 @@ class BodyAt(NamedTuple):
     base: Base
 
 
-@jit
+@jit(inner=True)
 def body_at(start: Quaternion, explicit: Array, turn: Vector, a: Array, gravity: float, h: float) -> BodyAt:
     """Body at a stage: explicit row plus h times the unknown accelerations. start: attitude at the step's start; turn: explicit part."""
     pull = vector(a, 0)
@@ -187,7 +187,7 @@ class LegMoved(NamedTuple):
     pad: PadMotion
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def leg_moved(body: BodyAt, explicit: Explicit, start: Quaternion, pull: Vector, spin_up: Vector, h: float) -> LegMoved:
     """Ball joint and pad at the end of a stage of h (s); start: the pad's attitude at the step's start."""
     r = body.turned
@@ -201,7 +201,7 @@ def leg_moved(body: BodyAt, explicit: Explicit, start: Quaternion, pull: Vector,
     return LegMoved(pull, spin_up, acceleration, p, v, motion)
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def leg_answer(leg: Leg, body: BodyAt, moved: LegMoved, crush: Crush, wrench: Wrench, soft: PadTangents) -> LegAt:
     """A leg under its soil's wrench: what is missing in its equations. soft: the soil's tangents, kept beside."""
     r, p, v = body.turned, moved.position, moved.velocity
@@ -223,7 +223,7 @@ def leg_answer(leg: Leg, body: BodyAt, moved: LegMoved, crush: Crush, wrench: Wr
     return LegAt(at, law, moved.pad, soft, wrench, ball, p, residual, twist, force, torque)
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def leg_blocks(leg: Leg, body: BodyAt, trial: LegAt, h: float) -> Blocks:
     """Newton's blocks at a trial: how what is missing answers the accelerations."""
     r, at, soft, attitude = body.turned, trial.at, trial.soft, trial.pad.attitude
@@ -254,7 +254,7 @@ def diagonal(d: Vector) -> Matrix:
     return ((d[0], 0.0, 0.0), (0.0, d[1], 0.0), (0.0, 0.0, d[2]))
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def eliminate(trial: LegAt, b: Blocks, work: Work, i: int) -> None:
     """Solve leg i for its unknowns in terms of the body's, and add what remains to the body's equations.
 
@@ -329,14 +329,14 @@ class Stage(NamedTuple):
     attached: Attached
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def crush_of(start: Flight, i: int) -> Crush:
     """Leg i's memory."""
     r = start.legs
     return Crush(r[i, CRUSH], r[i, CRUSH + 1], r[i, CRUSH + 2], r[i, CRUSH + 3], r[i, CRUSH + 4])
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def moved_at(start: Flight, body: BodyAt, given: Stage, a: Array, i: int) -> LegMoved:
     """Leg i's motion at trial accelerations a (n + 1, 6)."""
     r, k, explicit = start.legs, 1 + i, given.legs
@@ -345,7 +345,7 @@ def moved_at(start: Flight, body: BodyAt, given: Stage, a: Array, i: int) -> Leg
     return leg_moved(body, known, attitude, of_row(a, k, 0), of_row(a, k, 3), given.h)
 
 
-@jit(inline=True)
+@jit(inline=True, inner=True)
 def leg_at(vehicle: Vehicle, start: Flight, body: BodyAt, given: Stage, a: Array, i: int) -> LegAt:
     """Leg i at trial accelerations a (n + 1, 6)."""
     moved = moved_at(start, body, given, a, i)
@@ -362,7 +362,7 @@ def attached_wrench(attached: Attached, base: Base) -> tuple[Vector, Vector]:
     return add(attached.force, force), add(attached.torque, torque)
 
 
-@jit
+@jit(inner=True)
 def trial_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array) -> Trial:
     """What is missing at trial accelerations a (n + 1, 6)."""
     n, mass = len(vehicle.legs), vehicle.body.mass
@@ -383,7 +383,7 @@ def trial_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array) -> Trial:
     return Trial(body, legs, r_f, r_m, size + (dot(r_f, r_f) + dot(r_m, r_m)) / (mass * mass))
 
 
-@jit
+@jit(inner=True)
 def body_missing(own: Body, at: BodyAt, force: Vector, torque: Vector) -> tuple[Vector, Vector]:
     """What is missing in the body's equations under force and torque about B's origin, in B: N and N m, L."""
     f = axpy(-own.mass, at.base.pull, force)
@@ -391,7 +391,7 @@ def body_missing(own: Body, at: BodyAt, force: Vector, torque: Vector) -> tuple[
     return apply(at.turned, f), apply(at.turned, m)
 
 
-@jit
+@jit(inner=True)
 def missing_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array, missing: Array, power: Array) -> None:
     """`trial_at` and `powers` without what Newton's matrix alone needs.
 
@@ -416,7 +416,7 @@ def missing_at(vehicle: Vehicle, start: Flight, given: Stage, a: Array, missing:
     put_vector(missing, 3, r_m)
 
 
-@jit
+@jit(inner=True)
 def standstill_share(vehicle: Vehicle, before: Trial, now: Trial) -> float:
     """The smallest share of a step at which a point in the soil stops sinking, where the published law's force jumps; 1: none does."""
     share = 1.0
@@ -436,7 +436,7 @@ def standstill_share(vehicle: Vehicle, before: Trial, now: Trial) -> float:
     return share
 
 
-@jit
+@jit(inner=True)
 def searched(vehicle: Vehicle, start: Flight, given: Stage, before: Trial, a: Array, step: Array) -> Trial:
     """The trial after Newton's step, or after a part of it where more is missing than before; a goes back with it."""
     now = trial_at(vehicle, start, given, a)
@@ -456,7 +456,7 @@ def searched(vehicle: Vehicle, start: Flight, given: Stage, before: Trial, a: Ar
     return now
 
 
-@jit
+@jit(inner=True)
 def newton_step(vehicle: Vehicle, at: Trial, h: float, a: Array, step: Array, work: Work) -> float:
     """Add Newton's step to a; gives its weighted square, (m/s2)², negative where there is none."""
     r = at.body.turned
@@ -474,7 +474,7 @@ def newton_step(vehicle: Vehicle, at: Trial, h: float, a: Array, step: Array, wo
     return advance_unknowns(a, step, work, len(vehicle.legs))
 
 
-@jit
+@jit(inner=True)
 def body_powers(body: BodyAt, given: Stage, power: Array) -> None:
     """power (n + 1, 4): row 0 gets that through the port and that of the effects on the body, W."""
     own = apply_transposed(body.turned, body.velocity)
@@ -484,7 +484,7 @@ def body_powers(body: BodyAt, given: Stage, power: Array) -> None:
         power[0, 1] = dot(force, own) + dot(torque, body.rate)
 
 
-@jit
+@jit(inner=True)
 def leg_powers(body: BodyAt, leg: LegAt, power: Array) -> None:
     """power (4,) gets those of soil, struts and ball joint of a leg, W."""
     relative = sub(apply_transposed(body.turned, leg.pad.rate), add(body.rate, cross(leg.at.axis, leg.at.swing)))
@@ -493,7 +493,7 @@ def leg_powers(body: BodyAt, leg: LegAt, power: Array) -> None:
     power[2] = dot(leg.ball, relative)
 
 
-@jit
+@jit(inner=True)
 def powers(body: BodyAt, legs: Any, given: Stage) -> Array:
     """(n + 1, 4): `body_powers`, then `leg_powers` of each leg."""
     power = np.zeros((1 + len(legs), 4))
@@ -503,7 +503,7 @@ def powers(body: BodyAt, legs: Any, given: Stage) -> Array:
     return power
 
 
-@jit
+@jit(inner=True)
 def stage(vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Array, step: Array, work: Work) -> tuple[bool, Array]:
     """Solve one stage for the accelerations a (n + 1, 6), row 0 the body's; they hold the guess on entry.
 
@@ -520,7 +520,7 @@ def stage(vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Arra
     return False, np.zeros((a.shape[0], 4))
 
 
-@jit
+@jit(inner=True)
 def advance_unknowns(a: Array, step: Array, work: Work, n: int) -> float:
     """Back-substitute the legs, add the Newton step to a, and return its weighted square, (m/s2)²."""
     size = 0.0

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 LEG_REPORT = 24  # numbers a leg shows
 
 
-@jit
+@jit(inner=True)
 def leg_state(f: Flight, i: int) -> LegState:
     """Leg i as its own unit keeps it: the pad's rate in pad axes."""
     row = f.legs[i]
@@ -32,7 +32,7 @@ def leg_state(f: Flight, i: int) -> LegState:
     return LegState(vector(row, P), vector(row, V), q, apply_transposed(rotation(q), vector(row, W)), crush)
 
 
-@jit
+@jit(inner=True)
 def show_body(vehicle: Vehicle, f: Flight, a: Array, body: Array, energy: Array) -> None:
     """body: position, quaternion, velocity, rate, acceleration, angular acceleration, attitude angles, rates (25); energy: kinetic,
     potential of the whole vehicle."""
@@ -53,7 +53,7 @@ def show_body(vehicle: Vehicle, f: Flight, a: Array, body: Array, energy: Array)
     energy[0], energy[1] = kinetic, potential
 
 
-@jit
+@jit(inner=True)
 def show_leg(vehicle: Vehicle, f: Flight, ledger: Array, touch: Array, i: int, out: Array) -> None:
     """Leg i: pad position and velocity, strokes, loads, peak strokes, bottomed, dissipated, pad work, then its soil's penetration, gap,
     skid, normal force, contact, contact time (24 numbers)."""

@@ -79,7 +79,7 @@ def guess_first(nominal: Nominal, place: int, a: Array, guess: Array) -> None:
         guess += a - nominal.solved[place - 1, 1]
 
 
-@jit
+@jit(inner=True)
 def keep_step(
     vehicle: Vehicle, nominal: Nominal, now: float, h: float, f: Flight, stages: tuple[Stage, Stage], one: Array, two: Array
 ) -> None:
@@ -97,7 +97,7 @@ def keep_step(
     nominal.use[1] = kept + 1
 
 
-@jit
+@jit(inner=True)
 def invert(vehicle: Vehicle, at: Trial, h: float, inverse: NDArray[np.float32]) -> None:
     """Newton's matrix at a trial (`twin.eliminate` has its blocks), inverted, transposed."""
     n = len(vehicle.legs)
@@ -131,7 +131,7 @@ def invert(vehicle: Vehicle, at: Trial, h: float, inverse: NDArray[np.float32]) 
         inverse[:, :] = np.nan  # a run beside then finds that nothing converges, and is on its own
 
 
-@jit
+@jit(inner=True)
 def stage_beside(
     vehicle: Vehicle, newton: Newton, start: Flight, given: Stage, a: Array, inverse: NDArray[np.float32], share: Array
 ) -> tuple[bool, Array]:

@@ -73,7 +73,7 @@ def copied(f: Flight) -> Flight:
     return Flight(f.body.copy(), f.legs.copy(), f.memory.copy())
 
 
-@jit
+@jit(inner=True)
 def explicit_part(vehicle: Vehicle, f: Flight, rest: float, one: Array, mid: Flight, turns: Array) -> Flight:
     """State plus `rest` (s) times the first stage's derivative; `turns` gets the rotation vectors. rest = 0: the state itself."""
     n = len(vehicle.legs)
@@ -99,7 +99,7 @@ def explicit_part(vehicle: Vehicle, f: Flight, rest: float, one: Array, mid: Fli
     return out
 
 
-@jit
+@jit(inner=True)
 def stage_state(vehicle: Vehicle, start: Flight, explicit: Flight, turns: Array, a: Array, h: float) -> Flight:
     """State at a solved stage, memories as at the start."""
     out = copied(start)
@@ -145,7 +145,7 @@ def pad_motion(f: Flight, i: int) -> PadMotion:
     )
 
 
-@jit
+@jit(inner=True)
 def latch(vehicle: Vehicle, f: Flight, touch: Array, t: float, h: float) -> None:
     """Bring all memories up to the state at t + h; touch (n,) gets the instants of first contact (-1 before)."""
     for i in range(len(vehicle.legs)):
@@ -161,7 +161,7 @@ def latch(vehicle: Vehicle, f: Flight, touch: Array, t: float, h: float) -> None
             touch[i] = t + h * above / (above - depth) if above <= 0.0 else t
 
 
-@jit
+@jit(inner=True)
 def local_error(before: Array, one: Array, two: Array, h: float) -> float:
     """Largest local error of a velocity over the step, m/s: C h³ a'' from three instants of the accelerations (n + 1, 6).
 
@@ -179,7 +179,7 @@ def local_error(before: Array, one: Array, two: Array, h: float) -> float:
     return float(ERROR_CONSTANT * h * h * h * worst**0.5)
 
 
-@jit
+@jit(inner=True)
 def stage_of(explicit: Flight, turns: Array, engine: Engine, t: float, h: float, attached: Attached) -> Stage:
     """A stage at a time t after the start of the interval."""
     force, torque = axpy(t, engine.force_slope, engine.force), axpy(t, engine.torque_slope, engine.torque)
@@ -192,7 +192,7 @@ def nothing_attached() -> Attached:
     return Attached(False, ZERO, ZERO, Pendulum(0.0, 1.0, 0.0, ZERO), Sway(ZERO, ZERO))
 
 
-@jit
+@jit(inner=True)
 def attached_at(effects: Effects, outside: Outside, share: float, sway: Sway) -> Attached:
     """The effects at a share of a step."""
     force, torque = within(outside, share)
@@ -332,7 +332,7 @@ def fly(
     return Progress(True, h, steps, rejected)
 
 
-@jit
+@jit(inner=True)
 def carried_on(
     vehicle: Vehicle,
     pendulum: Pendulum,
