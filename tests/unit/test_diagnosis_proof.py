@@ -105,6 +105,39 @@ def test_what_the_scenarios_interval_does_not_resolve_is_flown_with_a_finer_one(
     )
 
 
+class Branching(Stub):
+    """Runs with more than a quarter of the interval take a branch that is off by 0.005."""
+
+    def fly(self, values: Any, inserts: Any, stop: float, columns: Any, final: Any, settings: Any = None) -> Flight:
+        flight = super().fly(values, inserts, stop, columns, final, settings)
+        assert flight.course is not None
+        off = 0.005 if self.intervals[-1] > self.until else 0.0
+        return Flight(Course(TIMES, {PITCH: flight.course.columns[PITCH] + off}, flight.course.final), flight.reason)
+
+    until = 0.25
+
+
+def test_units_that_agree_with_the_twin_by_finer_intervals_alone_are_flown_with_these() -> None:
+    simulation, landings = Branching(), [observed("one", 1.0), observed("two", 1.0, holdout=True)]
+    found = prove(simulation, landings, belief(0.5, predicted=0.5), belief(1.0, predicted=1.0))
+    assert simulation.intervals == [1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 0.5, 0.25, 0.25, 0.25, 0.25, 0.25]
+    assert found.numerics.settings["max_interval"] == pytest.approx(0.25 * MasterSettings().max_interval)
+    assert found.checks["twin"]["worst"] == pytest.approx(0.0, abs=1e-9)
+    assert found.warnings == [
+        "twin and units differ by 0.50 sigma with the scenario's interval and tolerance, though half of them changes nothing: "
+        "flown with 0.25 of both"
+    ]
+
+
+def test_units_that_never_agree_with_the_twin_are_flown_as_the_scenario_says() -> None:
+    simulation = Branching()
+    simulation.until = 0.0
+    found = prove(simulation, [observed("one", 1.0)], belief(0.5, 1), belief(1.0, 1, predicted=1.0))
+    assert simulation.intervals == [1.0, 0.5, 1.0, 1.0, 0.5, 0.25, 0.125]
+    assert found.numerics.settings == {}
+    assert found.warnings == ["twin and units differ by 0.50 sigma: the search's own numbers are not exact"]
+
+
 def test_a_run_that_cannot_be_trusted_fails_the_gate() -> None:
     gate = numerics_gate(Stub(reason="2 % of the steps missed the tolerance"), {"slope": 1.0}, (), observed("one", 1.0), {})
     assert not gate.ok

@@ -9,6 +9,8 @@ from pathlib import Path
 import plain_run
 import pytest
 from lander.laws.compiled import COMPILED
+from lander.laws.twin import CRUSH, crush_of
+from lander.laws.twin_stepping import empty_flight
 
 
 @pytest.mark.skipif(not COMPILED, reason="numba is not here: nothing to compare with")
@@ -24,3 +26,13 @@ def test_compiled_and_plain_python_agree() -> None:
     for name, ours in compiled.items():
         different = [(i, a, b) for i, (a, b) in enumerate(zip(ours, plain[name], strict=True)) if a != b]
         assert not different, f"{name}: compiled and plain differ at {different[:3]}"
+
+
+@pytest.mark.skipif(not COMPILED, reason="numba is not here: every law is plain Python")
+def test_a_law_for_compiled_callers_alone_says_so_when_python_calls_it() -> None:
+    """Verifies: an error, where numba would end the process; py_func is the law."""
+    with pytest.raises(TypeError, match="crush_of is for compiled laws alone; its py_func is plain Python"):
+        crush_of(None, 0)  # type: ignore[arg-type]
+    flight = empty_flight(4)
+    flight.legs[2, CRUSH] = 0.1
+    assert crush_of.py_func(flight, 2).primary == 0.1  # type: ignore[attr-defined]

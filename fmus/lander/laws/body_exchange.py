@@ -15,19 +15,19 @@ WRENCH = 18  # numbers of a port: force, slope, socket, torque, slope, socket
 VALID = 6  # place of `reference_valid` behind the reference's velocity and rate
 
 
-@jit
+@jit(inner=True)
 def read_wrench(row: Array) -> BodyLoad:
     """One port's wrench, its socket included."""
     return BodyLoad(add(vector(row, 0), vector(row, 6)), add(vector(row, 9), vector(row, 15)), vector(row, 3), vector(row, 12))
 
 
-@jit
+@jit(inner=True)
 def with_change(load: BodyLoad, change: Array) -> BodyLoad:
     """The wrench with a constant (6) added."""
     return BodyLoad(add(load.force, vector(change, 0)), add(load.torque, vector(change, 3)), load.force_slope, load.torque_slope)
 
 
-@jit
+@jit(inner=True)
 def total_load(wrenches: Array, changes: Array) -> BodyLoad:
     """Sum over the ports (n, WRENCH), with each port's change (n, 6)."""
     row, change = np.zeros(WRENCH), np.zeros(6)
@@ -37,7 +37,7 @@ def total_load(wrenches: Array, changes: Array) -> BodyLoad:
     return with_change(read_wrench(row), change)
 
 
-@jit
+@jit(inner=True)
 def changes_of(body: Body, before: BodyState, wrenches: Array, models: Array, reference: Array, step: float, longest: float) -> Array:
     """Change of each port's wrench (n, 6) because the body moves otherwise than in the pass before; zero without such a pass.
 
@@ -67,7 +67,7 @@ def write_body(body: Body, now: BodyState, out: Array, angles: Array) -> None:
     angles[ENERGY], angles[ENERGY + 1] = body_energy(body, now)
 
 
-@jit
+@jit(inner=True)
 def write_rates(before: Vector, now: Vector, step: float, angles: Array) -> None:
     """Mean and slope of each rate: those of the straight line through both ends, which a listener follows to the end value exactly."""
     for j in range(3):
@@ -75,7 +75,7 @@ def write_rates(before: Vector, now: Vector, step: float, angles: Array) -> None
         angles[RATES + 3 * j + 2] = (now[j] - before[j]) / step
 
 
-@jit
+@jit(inner=True)
 def write_course(out: Array, place: int, before: Vector, now: Vector, first: Vector, last: Vector, step: float) -> None:
     """An acceleration at `place`: at the end, its mean, its slope over the interval (9 numbers)."""
     put_vector(out, place, last)

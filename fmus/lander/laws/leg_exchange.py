@@ -36,7 +36,7 @@ GAVE_UP, DONE, BOTTOMED = range(3)
 MOUNT_WORK, PAD_WORK, KINETIC, POTENTIAL, DISSIPATED = range(5)  # the ledger's places
 
 
-@jit
+@jit(inner=True)
 def read_base(body: Array) -> BaseMotion:
     """Port `body`: position, quaternion, velocity, rate, acceleration with slope, angular acceleration with slope (25 numbers)."""
     return BaseMotion(
@@ -51,7 +51,7 @@ def read_base(body: Array) -> BaseMotion:
     )
 
 
-@jit
+@jit(inner=True)
 def read_load(pad: Array, contact: Array, place: Vector) -> PadLoad:
     """Wrench on the pad: force, slope, socket, torque, slope, socket (18 numbers); contact: the ground's stiffness and damping, predicted
     velocity and its slope (24 numbers); place: the pad's at the start, m, L."""
@@ -68,13 +68,13 @@ def read_load(pad: Array, contact: Array, place: Vector) -> PadLoad:
     )
 
 
-@jit
+@jit(inner=True)
 def read_state(s: Array) -> LegState:
     """Hidden states: p, v, pad's quaternion and rate, five memories (18 numbers)."""
     return LegState(vector(s, 0), vector(s, 3), quaternion(s, 6), vector(s, 10), Crush(s[13], s[14], s[15], s[16], s[17]))
 
 
-@jit
+@jit(inner=True)
 def write_state(s: Array, now: LegState, guess: Vector) -> None:
     """Hidden states back, and where Newton starts next time."""
     put_vector(s, 0, now.position)
@@ -86,7 +86,7 @@ def write_state(s: Array, now: LegState, guess: Vector) -> None:
     put_vector(s, 18, guess)
 
 
-@jit
+@jit(inner=True)
 def write_model(out: Array, m: InterfaceModel) -> None:
     """Port members `model_*` (43 numbers)."""
     put_vector(out, 0, m.acceleration)
@@ -100,7 +100,7 @@ def write_model(out: Array, m: InterfaceModel) -> None:
     put_vector(out, 40, m.strut_rate)
 
 
-@jit
+@jit(inner=True)
 def write_mount_model(leg: Leg, base: BaseState, now: LegState, loads: Loads, friction: float, contact: Array, out: Array) -> None:
     """Port members `mount.model_*` (66 numbers, as `impedance.read_mount` takes them); contact: the ground's tangents in L (18)."""
     at = shape(leg, now.position, now.velocity)
@@ -119,7 +119,7 @@ def write_mount_model(leg: Leg, base: BaseState, now: LegState, loads: Loads, fr
     put_matrix(out, 57, product(back, product(matrix(contact, 9), body)))
 
 
-@jit
+@jit(inner=True)
 def write_pad(leg: Leg, gravity: float, base: BaseState, now: LegState, force: Vector, ball: Vector, pad: Array, model: Array) -> None:
     """The pad's motion (13 numbers) and the interface model."""
     at = pad_state(base, now)
@@ -130,7 +130,7 @@ def write_pad(leg: Leg, gravity: float, base: BaseState, now: LegState, force: V
     write_model(model, interface_model(leg, gravity, base, now, force, ball))
 
 
-@jit
+@jit(inner=True)
 def write_struts(leg: Leg, now: LegState, primary: float, right: float, left: float, struts: Array) -> None:
     """Strokes, loads, peak strokes (9 numbers)."""
     put_vector(struts, 0, strokes(leg, now.position))
@@ -139,13 +139,13 @@ def write_struts(leg: Leg, now: LegState, primary: float, right: float, left: fl
         struts[6 + i] = max(struts[6 + i], struts[i])
 
 
-@jit
+@jit(inner=True)
 def write_energy(leg: Leg, gravity: float, base: BaseState, now: LegState, ledger: Array) -> None:
     """Kinetic and potential energy into the ledger."""
     ledger[KINETIC], ledger[POTENTIAL] = leg_energy(leg, gravity, base, now)
 
 
-@jit
+@jit(inner=True)
 def write_mount(leg: Leg, last: Stage, impulse: Vector, angular_impulse: Vector, step: float, mount: Array) -> None:
     """Wrench on the body: end value, mean over the interval, slope from the last end to this one (18 numbers)."""
     at = shape(leg, last.position, last.velocity)

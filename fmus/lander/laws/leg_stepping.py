@@ -98,7 +98,7 @@ class Stage(NamedTuple):
     ok: bool
 
 
-@jit
+@jit(inner=True)
 def pad_spin(leg: Leg, torque: Vector, rate: Vector, now: Vector, joint: Vector, h: float) -> Vector:
     """Angular acceleration of the pad, rad/s2, pad axes, implicit in its own joint damping over h.
 
@@ -111,7 +111,7 @@ def pad_spin(leg: Leg, torque: Vector, rate: Vector, now: Vector, joint: Vector,
     return (push[0] / (i[0] + h * c), push[1] / (i[1] + h * c), push[2] / (i[2] + h * c))
 
 
-@jit
+@jit(inner=True)
 def answer(load: PadLoad, here: BaseState, body: Matrix, rate: Vector, p: Vector, v: Vector) -> Vector:
     """Force on the pad at the instant of `load`, N, B, with the pad where it is."""
     away = sub(add(here.position, apply(body, p)), load.place)
@@ -120,7 +120,7 @@ def answer(load: PadLoad, here: BaseState, body: Matrix, rate: Vector, p: Vector
     return apply_transposed(body, sub(load.force, held))
 
 
-@jit
+@jit(inner=True)
 def solve_stage(
     leg: Leg,
     base: Base,
@@ -181,7 +181,7 @@ def solve_stage(
     return Stage(p, v, q, w, spin_up, motion, ball, base, force, ok)
 
 
-@jit
+@jit(inner=True)
 def stage_course(leg: Leg, stage: Stage, body: Matrix, velocity: Vector, load: PadLoad, h: float) -> Course:
     """Contribution of one stage, weighted by h (s). velocity is that of B's origin, in B."""
     at = shape(leg, stage.position, stage.velocity)
@@ -198,7 +198,7 @@ def stage_course(leg: Leg, stage: Stage, body: Matrix, velocity: Vector, load: P
     )
 
 
-@jit
+@jit(inner=True)
 def join(a: Course, b: Course) -> Course:
     """Sum of two courses."""
     return Course(
@@ -210,7 +210,7 @@ def join(a: Course, b: Course) -> Course:
     )
 
 
-@jit
+@jit(inner=True)
 def load_at(load: PadLoad, t: float) -> PadLoad:
     """The pad's wrench t seconds into the interval."""
     return PadLoad(
@@ -226,7 +226,7 @@ def load_at(load: PadLoad, t: float) -> PadLoad:
     )
 
 
-@jit
+@jit(inner=True)
 def substep(
     leg: Leg, gravity: float, motion: BaseMotion, load: PadLoad, state: LegState, t: float, h: float, guess: Vector
 ) -> tuple[LegState, Course, Stage]:

@@ -15,13 +15,13 @@ Array = NDArray[np.float64]
 PENETRATION, GAP, SKID, NORMAL, WORK = range(5)  # places in the report
 
 
-@jit
+@jit(inner=True)
 def read_start(pad: Array) -> PadStart:
     """Port `pad`: position, quaternion, velocity, angular velocity (13 numbers)."""
     return PadStart(vector(pad, 0), quaternion(pad, 3), vector(pad, 7), vector(pad, 10))
 
 
-@jit
+@jit(inner=True)
 def read_model(m: Array) -> InterfaceModel:
     """Port members `model_*` (43 numbers)."""
     return InterfaceModel(
@@ -37,13 +37,13 @@ def read_model(m: Array) -> InterfaceModel:
     )
 
 
-@jit
+@jit(inner=True)
 def motion_of(start: PadStart) -> PadMotion:
     """The pad as its points move."""
     return PadMotion(start.position, rotation(start.attitude), start.velocity, start.rate)
 
 
-@jit
+@jit(inner=True)
 def write_report(surface: Surface, pad: Footpad, at: PadMotion, wrench: Wrench, memory: Array, report: Array) -> None:
     """Penetration of the centre, gap, skid, normal force (5 numbers, the work is kept)."""
     gap = 1e300
@@ -55,7 +55,7 @@ def write_report(surface: Surface, pad: Footpad, at: PadMotion, wrench: Wrench, 
     report[NORMAL] = dot(wrench.force, normal_at(surface, at.position))
 
 
-@jit
+@jit(inner=True)
 def write_wrench(course: SoilCourse, end: Wrench, step: float, out: Array) -> None:
     """End value, mean and least-squares slope of force and torque over the interval (18 numbers)."""
     put_vector(out, 0, end.force)
@@ -64,7 +64,7 @@ def write_wrench(course: SoilCourse, end: Wrench, step: float, out: Array) -> No
     fit(course.angular_impulse, course.moment_angular_impulse, step, out, 12)
 
 
-@jit
+@jit(inner=True)
 def fit(impulse: Vector, moment: Vector, step: float, out: Array, place: int) -> None:
     """Mean and slope of the straight line with the same impulse and the same first moment in time."""
     put_vector(out, place, scale(1.0 / step, impulse))
@@ -90,7 +90,7 @@ def start_soil(
     return deepest(memory)
 
 
-@jit
+@jit(inner=True)
 def write_predicted(at: PadMotion, rate: Vector, predicted: Array) -> None:
     """Position, velocity (value and mean) and angular velocity the soil expects the pad to have (15 numbers, the velocity's slope kept)."""
     put_vector(predicted, 0, at.position)
@@ -99,7 +99,7 @@ def write_predicted(at: PadMotion, rate: Vector, predicted: Array) -> None:
     put_vector(predicted, 12, rate)
 
 
-@jit
+@jit(inner=True)
 def write_contact(stiffness: Matrix, damping: Matrix, contact: Array) -> None:
     """How the ground answers the pad's motion: -dF/dx and -dF/dv as value and mean, by rows (36 numbers)."""
     for i in (0, 9):

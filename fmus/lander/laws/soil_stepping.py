@@ -102,7 +102,7 @@ class Travel(NamedTuple):
     rate: Vector
 
 
-@jit
+@jit(inner=True)
 def seen(start: PadStart, travel: Travel, shift: Shift, t: float, interval: float) -> PadMotion:
     """Motion of the pad as the soil meets it: model plus mismatch."""
     share = t / interval
@@ -116,7 +116,7 @@ def seen(start: PadStart, travel: Travel, shift: Shift, t: float, interval: floa
     )
 
 
-@jit
+@jit(inner=True)
 def inverse_inertia(model: InterfaceModel, attitude: Matrix) -> Matrix:
     """Inverse inertia of the pad in L; zero where the model gives none."""
     i = model.inertia
@@ -126,7 +126,7 @@ def inverse_inertia(model: InterfaceModel, attitude: Matrix) -> Matrix:
     return product(attitude, product(inverse, transpose(attitude)))
 
 
-@jit
+@jit(inner=True)
 def answers(
     model: InterfaceModel, start: PadStart, travel: Travel, at: PadMotion, wrench: Wrench, flexible: Matrix, t: float
 ) -> tuple[Vector, Vector]:
@@ -142,7 +142,7 @@ def answers(
     return a, apply(flexible, torque)
 
 
-@jit
+@jit(inner=True)
 def newton_matrix(model: InterfaceModel, t: PadTangents, flexible: Matrix, h: float, out: Array) -> None:
     """d(residual)/d(accelerations), (6, 6), into out: I + h (damping) + h² (stiffness), soil's and strut's."""
     out[:, :] = 0.0
@@ -155,7 +155,7 @@ def newton_matrix(model: InterfaceModel, t: PadTangents, flexible: Matrix, h: fl
     put(out, 3, 3, plus(identity(1.0), product(flexible, turning)))
 
 
-@jit
+@jit(inner=True)
 def soil_stage(
     soil: Soil,
     surface: Surface,
@@ -206,7 +206,7 @@ def soil_stage(
     return travel, a, b, wrench, at, ok, tangents
 
 
-@jit
+@jit(inner=True)
 def add_stage(c: SoilCourse, wrench: Wrench, ground: PadTangents, at: PadMotion, t: float, h: float) -> SoilCourse:
     """The course with a stage of weight h (s) at time t added."""
     return SoilCourse(
@@ -222,7 +222,7 @@ def add_stage(c: SoilCourse, wrench: Wrench, ground: PadTangents, at: PadMotion,
     )
 
 
-@jit
+@jit(inner=True)
 def touched(c: SoilCourse, t: float) -> SoilCourse:
     """The course with the instant of contact."""
     return SoilCourse(
@@ -291,7 +291,7 @@ def step_soil(
     return at, attitude_of(start, now, shift, interval, interval), wrench, course, True
 
 
-@jit
+@jit(inner=True)
 def attitude_of(start: PadStart, travel: Travel, shift: Shift, t: float, interval: float) -> Quaternion:
     """Quaternion that belongs to `seen`."""
     turn = axpy(0.5 * t * t / interval, shift.rate, travel.turn)
