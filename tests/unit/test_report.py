@@ -23,6 +23,7 @@ from orchestrator.diagnosis.report import (
 from orchestrator.diagnosis.report.file_names import FileNames
 from orchestrator.diagnosis.report.numbers import chance, number, percent, signed, with_sigma
 from orchestrator.diagnosis.report.plot_dots import missed, rest_picture
+from orchestrator.diagnosis.report.plot_where import where_picture
 from orchestrator.diagnosis.report.template import flat, in_words
 from orchestrator.diagnosis.report.words import caution
 
@@ -232,6 +233,16 @@ def test_a_value_between_its_bounds_misses_nothing() -> None:
     assert missed(depth, 0.012) > 0.0 > missed(depth, 0.09)  # type: ignore[operator]
     assert missed(stroke, 0.1016 + 0.00635) == pytest.approx(-1.0)
     assert missed(stroke, None) is None
+
+
+def test_where_no_stretch_of_a_channel_stands_out_the_picture_says_so() -> None:
+    found = outcome("effect").where
+    marked, plain = (where_picture(windows, landing(), {}) for windows in (found, []))
+    assert found
+    assert marked is not None
+    assert plain is not None
+    assert "the fuller the colour, the stronger" in marked.caption
+    assert "in no stretch of any channel" in plain.caption
 
 
 @pytest.mark.parametrize("named", [True, False])

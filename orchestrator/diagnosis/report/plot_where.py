@@ -17,6 +17,14 @@ from orchestrator.results.plot_style import DASHES, INK, leg_colours
 
 DEEPEST = 0.85  # opacity of the strongest window
 HEIGHT = 0.72  # of a strip, of 1
+STRONGEST = (
+    "Where the scenario, its uncertain values fitted, disagrees with the data: the fuller the colour, the stronger. "
+    "Numbers are standard deviations."
+)
+NOWHERE = (
+    "With its uncertain values fitted the scenario disagrees with the data in no stretch of any channel by more than noise does somewhere: "
+    "what is missing, if anything, shows in all readings together."
+)
 
 
 def where_picture(
@@ -41,8 +49,8 @@ def where_picture(
     contacts = [(c.pad, c.time) for c in landing.contacts] if landing and landing.contacts else list(events.items())
     _lines(axes, sorted(((pad, t) for pad, t in contacts if np.isfinite(t)), key=lambda pair: pair[1]))
     told = [f"{w.channel} from {w.from_s:.2f} to {w.to_s:.2f} s ({number(w.sigmas, 2)} sigma)" for w in timed]
-    caption = "Where the scenario, its uncertain values fitted, disagrees with the data: the fuller the colour, the stronger."
-    caption += " Numbers are standard deviations. The thin line is the residual; dashed: the pads' first contacts in the simulation."
+    caption = STRONGEST if timed else NOWHERE
+    caption += " The thin line is the residual, each strip to 4 σ or its own largest; dashed: the pads' first contacts in the simulation."
     return Picture(
         name,
         "Where simulation and data disagree",
