@@ -103,7 +103,7 @@ def blueprint(base: Base, overrides: Sequence[str]) -> Blueprint:
 
 
 def _flown(base: Base, overrides: Sequence[str]) -> tuple[RunResult, dict[str, Any]]:
-    from orchestrator.results.writer import summarise  # loads a plotting library
+    from orchestrator.results.writer import summarise  # slow to import: scipy
 
     result = _UNITS.run(blueprint(base, overrides), on_hang=lambda _: os._exit(RunError.exit_code))
     if not result.complete:
