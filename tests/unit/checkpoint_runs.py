@@ -13,7 +13,8 @@ WALL_TIME = ("wall_s", "share_outside_units", "unit_seconds_each")
 
 
 def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments), "--quiet", "--no-figures"]
+    drawing = ["--no-figures"] if arguments[0] in ("run", "resume") else []
+    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments), "--quiet", *drawing]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=300)
 
 
