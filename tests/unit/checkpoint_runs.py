@@ -13,14 +13,13 @@ WALL_TIME = ("wall_s", "share_outside_units", "unit_seconds_each")
 
 
 def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    drawing = ["--no-figures"] if arguments[0] in ("run", "resume") else []
-    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments), "--quiet", *drawing]
+    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments), "--quiet"]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=300)
 
 
 def run(scenario: object, out: Path, *arguments: object) -> Path:
     """A run that succeeds without a word."""
-    done = orchestrator("run", scenario, "--out", out, *arguments, cwd=out.parent)
+    done = orchestrator("run", scenario, "--out", out, "--no-figures", *arguments, cwd=out.parent)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     return out
 
@@ -43,7 +42,7 @@ def checkpoint(out: Path, number: int) -> Path:
 def resumed(out: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
     """From another folder: nothing may depend on where the run was started."""
     (out / "elsewhere").mkdir(exist_ok=True)
-    return orchestrator("resume", out, *arguments, cwd=out / "elsewhere")
+    return orchestrator("resume", out, "--no-figures", *arguments, cwd=out / "elsewhere")
 
 
 def content(out: Path) -> dict[str, Any]:

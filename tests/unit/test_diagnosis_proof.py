@@ -106,15 +106,15 @@ def test_what_the_scenarios_interval_does_not_resolve_is_flown_with_a_finer_one(
 
 
 class Branching(Stub):
-    """Runs with more than a quarter of the interval take a branch that is off by 0.005."""
+    """Runs with more than `until` of the interval take a branch that is off by 0.005."""
+
+    until = 0.25
 
     def fly(self, values: Any, inserts: Any, stop: float, columns: Any, final: Any, settings: Any = None) -> Flight:
         flight = super().fly(values, inserts, stop, columns, final, settings)
         assert flight.course is not None
         off = 0.005 if self.intervals[-1] > self.until else 0.0
         return Flight(Course(TIMES, {PITCH: flight.course.columns[PITCH] + off}, flight.course.final), flight.reason)
-
-    until = 0.25
 
 
 def test_units_that_agree_with_the_twin_by_finer_intervals_alone_are_flown_with_these() -> None:
@@ -126,6 +126,18 @@ def test_units_that_agree_with_the_twin_by_finer_intervals_alone_are_flown_with_
     assert found.warnings == [
         "twin and units differ by 0.50 sigma with the scenario's interval and tolerance, though half of them changes nothing: "
         "flown with 0.25 of both"
+    ]
+
+
+def test_where_the_gate_has_halved_already_both_are_said() -> None:
+    simulation = Branching(0.003)
+    simulation.until = 0.2
+    found = prove(simulation, [observed("one", 1.0)], belief(0.5, 1), belief(1.0, 1, predicted=1.0))
+    assert (found.numerics.halved, found.numerics.agreed) == (1, 3)
+    assert found.warnings == [
+        "half the scenario's interval and tolerance move a channel by 0.30 sigma: flown with 0.5 of both, half of which moves 0.15 sigma",
+        "twin and units differ by 0.80 sigma with 0.5 of the scenario's interval and tolerance, though half of them changes nothing: "
+        "flown with 0.125 of both",
     ]
 
 
