@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, fitted
-from orchestrator.diagnosis.held_out import exchanged
+from orchestrator.diagnosis.held_out import climbed_with, exchanged
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.observation import ORIGIN, Track
 from orchestrator.diagnosis.problem import Landings, Model
 from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.begin import Timed
 from orchestrator.diagnosis.tasks.draw import Draw
 from orchestrator.diagnosis.tasks.fits import Climb
@@ -134,3 +135,31 @@ def test_on_a_held_out_landing_whoever_is_caught_is_freed_by_the_other(caught: s
     assert abs(null.objective - fit.objective) > 10.0, "nobody is caught here: the test shows nothing"
     search = Search(landings, both, (), Crew(turning))
     assert [f.z[0] for f in exchanged(search, null, fit)] == pytest.approx([0.0, 0.0], abs=0.01)
+
+
+class Lifted(Turning):
+    """Turning whose early readings an effect lifts."""
+
+    def column(self, name: str, values: Mapping[str, float], t: Array) -> Array:
+        return super().column(name, values, t) + np.where(t < EARLY, values["lift"], 0.0)
+
+
+def lifted() -> Lifted:
+    return Lifted()
+
+
+def test_on_a_held_out_landing_the_nuisances_are_fitted_anew_with_the_effect_in() -> None:
+    """Without the effect the nuisance is drawn a whole turn away, and put in there the effect does not free it."""
+    tracked = tracks(Lifted(), {"a": 0.0, "lift": 0.7}, ("x", "y"), TIMES, 0.02, 3)
+    landings = one_landing(tracked, (), {"a": 0.0, "lift": 0.0})
+    nuisances, own = [coordinate("a")], [Coordinate("lift", (("lift", 1.0),), 0.03, mean=0.7)]
+    search = Search(landings, nuisances, (), Crew(lifted))
+    drawn_away = search.base()
+    caught = search.fit_once(Hypothesis("lift", tuple(own)), drawn_away, "held-out landing")
+    assert caught is not None
+    assert caught.z[0] > 0.3, "nobody is caught here: the test shows nothing"
+    held = Setup(None, lifted, {}, landings, ["held"], nuisances, [], [])  # type: ignore[arg-type]
+    found = climbed_with(held, own, Crew(lifted), 0, None)
+    assert found is not None
+    assert found.z[0] == pytest.approx(0.0, abs=0.01)
+    assert found.chi2 < 2.0 * landings.size < caught.chi2
