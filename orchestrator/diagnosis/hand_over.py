@@ -8,14 +8,16 @@ winner's fit tell how far nuisances and rival must move for the winner's effect 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.fit import Fit, gauss_newton_step, log_evidence
-from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, joined
 from orchestrator.diagnosis.problem import Model, Nobody
-from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.search import MARGIN, Search
 from orchestrator.diagnosis.tasks.fits import FitAt, Point
 from orchestrator.diagnosis.tasks.predict import slopes_beside
 
@@ -36,6 +38,29 @@ def handed_over(search: Search, fits: dict[str, Fit], hypotheses: Sequence[Hypot
     ends = begun_there(search, best, worth, taken)
     found = {name: fit for name, fit in ends.items() if fit.log_evidence > best.log_evidence - BEHIND}
     return search.if_better(fits, found, STAGE)
+
+
+def handed_over_within(
+    search: Search, best: Fit, pair: tuple[Hypothesis, Hypothesis], hypotheses: Sequence[Hypothesis]
+) -> list[tuple[Hypothesis, Fit]]:
+    """Pairs in which one effect of the best pair stays and its other has gone over to a rival, refined where they come near the best."""
+    found: list[tuple[Hypothesis, Fit]] = []
+    for stays, goes in (pair, pair[::-1]):
+        beside = search.beside(stays)
+        fit = arranged(best, (*beside.nuisances, *goes.coordinates))
+        rivals = [h for h in hypotheses if h.name not in (stays.name, goes.name) and not h.slots & stays.slots]
+        taken = offers(beside, fit, rivals)
+        worth = [h for h in rivals if taken[h.name][0] > best.log_evidence - MARGIN]
+        ends = begun_there(beside, fit, worth, taken)
+        found += [(joined(stays, h), ends[h.name]) for h in worth if h.name in ends]
+    near = [(both, fit) for both, fit in found if fit.log_evidence > best.log_evidence - MARGIN]
+    return list(zip([both for both, _ in near], search.refine_all([fit for _, fit in near], STAGE), strict=True))
+
+
+def arranged(fit: Fit, coordinates: Sequence[Coordinate]) -> Fit:
+    """The same fit with its coordinates in another order."""
+    order = [fit.coordinates.index(c) for c in coordinates]
+    return replace(fit, coordinates=tuple(coordinates), z=fit.z[order], slopes=fit.slopes[:, order], jacobian=fit.jacobian[:, order])
 
 
 def begun_there(search: Search, best: Fit, rivals: Sequence[Hypothesis], taken: Mapping[str, tuple[float, Array]]) -> dict[str, Fit]:
@@ -71,4 +96,4 @@ def taken_over(search: Search, fit: Fit, rival: Hypothesis, own: Array) -> tuple
     return log_evidence(coordinates, z, residual, jacobian), z
 
 
-__all__ = ["begun_there", "handed_over", "offers", "taken_over"]
+__all__ = ["arranged", "begun_there", "handed_over", "handed_over_within", "offers", "taken_over"]

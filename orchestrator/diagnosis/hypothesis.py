@@ -19,6 +19,11 @@ class Hypothesis:
         """The starts as z."""
         return [tuple((p - c.mean) / c.sigma for p, c in zip(start, self.coordinates, strict=True)) for start in self.starts]
 
+    @property
+    def slots(self) -> set[str]:
+        """What it moves."""
+        return {name for c in self.coordinates for name, _ in c.slots}
+
 
 NULL = Hypothesis("nothing missing", ())
 
@@ -26,6 +31,11 @@ NULL = Hypothesis("nothing missing", ())
 def joined(first: Hypothesis, second: Hypothesis) -> Hypothesis:
     """Both effects at once."""
     return Hypothesis(f"{first.name} + {second.name}", (*first.coordinates, *second.coordinates))
+
+
+def turned_round(pair: str) -> str:
+    """The pair's name with its effects the other way round."""
+    return " + ".join(reversed(parts_of(pair)))
 
 
 def parts_of(name: str) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ STAGE = "second effects"
 
 def fit_seconds(search: Search, first: Hypothesis, fit: Fit, hypotheses: Sequence[Hypothesis]) -> dict[str, tuple[Hypothesis, Fit]]:
     """Pairs with a first effect by name, with their fits; the best two refined."""
-    others = [h for h in hypotheses if h.name != first.name and not slots_of(h) & slots_of(first)]
+    others = [h for h in hypotheses if h.name != first.name and not h.slots & first.slots]
     starts = {h.name: np.concatenate([fit.z, np.zeros(len(h.coordinates))]) for h in others}
     asks = [slopes_beside(search.landings, fit.coordinates, fit.z, fit.predicted, h.coordinates) for h in others]
     own = search.run(STAGE, asks)
@@ -38,11 +38,6 @@ def fit_seconds(search: Search, first: Hypothesis, fit: Fit, hypotheses: Sequenc
     for n, again in zip(top, search.refine_all([found[n][1] for n in top], STAGE), strict=True):
         found[n] = (found[n][0], again)
     return found
-
-
-def slots_of(h: Hypothesis) -> set[str]:
-    """What a hypothesis moves."""
-    return {name for c in h.coordinates for name, _ in c.slots}
 
 
 def _promised(search: Search, fit: Fit, h: Hypothesis, z: Array, own: Array) -> float:

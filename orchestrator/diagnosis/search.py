@@ -6,6 +6,7 @@ Order and reasons stand in docs/diagnosis.md. The landings are flown by a crew; 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +70,13 @@ class Search:
 
     def _counted(self, horizon: float) -> float:
         return counted(self.landings, horizon)
+
+    def beside(self, effect: Hypothesis) -> Search:
+        """The same search with an effect among what is fitted anyway."""
+        found, count = copy(self), len(self.nuisances)
+        found.nuisances = (*self.nuisances, *effect.coordinates)
+        found.fresh = (*self.fresh, *range(count, len(found.nuisances)))
+        return found
 
     # Base
 

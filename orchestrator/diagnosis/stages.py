@@ -14,13 +14,13 @@ from orchestrator.diagnosis.climb import explains
 from orchestrator.diagnosis.coordinates import SHARED, Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
-from orchestrator.diagnosis.hand_over import handed_over
-from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
+from orchestrator.diagnosis.hand_over import arranged, handed_over, handed_over_within
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of, turned_round
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import TRUST, Noise, Stretch, noise_of
 from orchestrator.diagnosis.observation import Observation
 from orchestrator.diagnosis.pairs import fit_seconds
-from orchestrator.diagnosis.search import Search, Told, renoised
+from orchestrator.diagnosis.search import LEAST, Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.predict import Land
 from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, credible, judge
@@ -184,8 +184,7 @@ def try_pairs(state: State) -> None:
     seconds = list(state.hypotheses)
     for name in singles:
         for pair, (hypothesis, fit) in fit_seconds(state.search, known[name], state.fits[name], seconds).items():
-            swapped_name = " + ".join(reversed(parts_of(pair)))
-            if swapped_name not in state.fits:
+            if turned_round(pair) not in state.fits:
                 state.fits[pair] = fit
                 state.hypotheses.append(hypothesis)
     pairs = [name for name in state.fits if len(parts_of(name)) > 1]
@@ -197,6 +196,8 @@ def try_pairs(state: State) -> None:
         _race_pairs(state)
         leader = max(pairs, key=lambda name: state.fits[name].log_evidence)
         state.fits = handed_over(state.search, state.fits, [known[name] for name in singles], leader)
+        _hand_over_within(state, seconds)
+        pairs = [name for name in state.fits if len(parts_of(name)) > 1]
     if _ahead(state, pairs) < OVERTAKES and adequacy(state.fits[singles[0]], state.setup.landings).p >= ADEQUATE:
         state.fits = {name: fit for name, fit in state.fits.items() if name not in pairs}
         state.hypotheses = [h for h in state.hypotheses if h.name not in pairs]
@@ -220,6 +221,32 @@ def _race_pairs(state: State) -> None:
     ranked = sorted(pairs, key=lambda name: -pairs[name].log_evidence)
     state.fits |= state.search.back_substituted(pairs, known, ranked[1:4], ranked[0])
     _rehear(state, state.search.crew)
+
+
+def _hand_over_within(state: State, singles: Sequence[Hypothesis]) -> None:
+    """Rivals of either effect of the best pair, beside the other one: a step under one pad is another's also where a second effect acts."""
+    known = {h.name: h for h in singles}
+    for _ in range(HAND_OVERS):
+        leader = _ranked(state)[0]
+        if len(parts_of(leader)) != 2:
+            return
+        first, second = (known[name] for name in parts_of(leader))
+        for both, fit in handed_over_within(state.search, state.fits[leader], (first, second), singles):
+            _take_in(state, both, fit)
+        if _ranked(state)[0] == leader:
+            return
+
+
+def _take_in(state: State, pair: Hypothesis, fit: Fit) -> None:
+    """A pair's fit where there was none, or a worse one, of the same two."""
+    round_about = next((h for h in state.hypotheses if h.name == turned_round(pair.name)), None)
+    if round_about is not None:
+        pair, fit = round_about, arranged(fit, (*state.search.nuisances, *round_about.coordinates))
+    if pair.name not in state.fits:
+        state.hypotheses.append(pair)
+    elif fit.objective > state.fits[pair.name].objective - LEAST:
+        return
+    state.fits[pair.name] = fit
 
 
 def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list[Judged], Judgement]:

@@ -19,6 +19,7 @@ from orchestrator.diagnosis.outcome import Verdict
 SURE = 0.9
 BEATS = 5.0  # ln evidence above nothing missing
 ADEQUATE = 0.01  # p-value of a residual
+BY_CHANCE = 10.0  # ln evidence above nothing missing that noise may lend an effect; in three nulls and a decoy 1.9 at most
 LOST = 1e-3  # p-value below which nothing missing is refused by itself
 TOGETHER = 0.05  # prior of any two effects at once
 OUTSIDE = 0.05  # as much for any one law that the library does not have
@@ -96,7 +97,7 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     best = known[named[0]]
     standing = tuple(n for n in named if known[n].stands)
     if not standing:
-        if null.adequacy >= LOST and best.adequacy >= ADEQUATE:
+        if null.adequacy >= LOST and best.adequacy >= ADEQUATE and best.log_evidence - null.log_evidence < BY_CHANCE:
             return Judgement("nothing_missing", (), found, f"{best.name} fits better, but not on the held-out landing")
         held = "" if best.holdout_gain is None else " or fails on the held-out landing"
         return Judgement(

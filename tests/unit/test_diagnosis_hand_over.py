@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, seen_from
-from orchestrator.diagnosis.hand_over import handed_over, taken_over
+from orchestrator.diagnosis.hand_over import arranged, handed_over, handed_over_within, taken_over
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Model
 from orchestrator.diagnosis.search import Search
@@ -85,3 +85,28 @@ def test_nothing_missing_takes_over_too() -> None:
     assert null.log_evidence < east.log_evidence - 100.0
     found = handed_over(search, {"east": east, NULL.name: null}, [EFFECTS["east"]], "east")
     assert found[NULL.name].log_evidence > east.log_evidence
+
+
+def test_beside_one_effect_of_a_pair_the_other_goes_over_to_its_rival() -> None:
+    """East and another together: west beside the other is the same. Whichever of the two stays in front."""
+    search = search_of({"east": 0.7, "n": 0.2, "other": 0.5})
+    both = (*NUISANCES, *EFFECTS["east"].coordinates, *EFFECTS["other"].coordinates)
+    model, at = Model(search.landings, both, Warped()), np.array([0.2, 0.7, 0.5])
+    predicted = model.predict(at)
+    assert predicted is not None
+    best = search.refine_all([seen_from(model, at, predicted, model.slopes(at, predicted))], "")[0]
+    found = handed_over_within(search, best, (EFFECTS["east"], EFFECTS["other"]), list(EFFECTS.values()))
+    assert [pair.name for pair, _ in found] == ["other + west"]
+    ((pair, fit),) = found
+    assert fit.coordinates == (*NUISANCES, *pair.coordinates)
+    assert fit.z == pytest.approx([0.9, 0.5, -0.7], abs=0.03)
+    assert fit.chi2 == pytest.approx(best.chi2, abs=0.5)
+
+
+def test_a_fit_arranged_otherwise_is_the_same_fit() -> None:
+    search = search_of({"east": 0.7})
+    fit = stuck(search, "east", (0.2, 0.7))
+    other = arranged(fit, fit.coordinates[::-1])
+    assert other.estimate(0) == pytest.approx(fit.estimate(1), rel=1e-12)
+    assert other.jacobian @ other.z == pytest.approx(fit.jacobian @ fit.z)
+    assert (other.objective, other.log_evidence) == pytest.approx((fit.objective, fit.log_evidence), rel=1e-12)

@@ -115,10 +115,19 @@ def test_pairs_are_raced_anew_before_one_is_believed(monkeypatch: Any) -> None:
     monkeypatch.setattr(stages, "fit_seconds", lambda *_: found)
     handed: list[Any] = []
     monkeypatch.setattr(stages, "handed_over", lambda _, fits, known, leader: handed.append(([h.name for h in known], leader)) or fits)
+    asked = []
+
+    def handed_over_within(_: Any, best: Any, pair: Any, __: Any) -> list[Any]:
+        asked.append(" + ".join(h.name for h in pair))
+        return [(Hypothesis("slope + step", (), ()), fit(20.5))]
+
+    monkeypatch.setattr(stages, "handed_over_within", handed_over_within)
     setup: Any = SimpleNamespace(landings=one_landing([], (), {}), nuisances=[], tolerances=())
-    hypotheses = [Hypothesis(EFFECT, (), ())]
+    hypotheses = [Hypothesis(name, (), ()) for name in (EFFECT, "step", "lag", "slope")]
     state = State(setup, Paired(), fit(100.0), {NULL.name: fit(100.0), EFFECT: fit(60.0)}, hypotheses)  # type: ignore[arg-type]
     try_pairs(state)
+    assert asked == [RIGHT], "nobody overtook it: it is asked once"
+    assert "slope + step" in state.fits
     assert min(state.fits, key=lambda name: state.fits[name].objective) == RIGHT
     assert [it.objective for it in heard] == [20.0], "the noise is judged by the best pair"
     assert handed == [([EFFECT], WRONG), ([EFFECT], RIGHT)], "the first effect alone may do what the pair does"

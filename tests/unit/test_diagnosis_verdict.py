@@ -62,6 +62,13 @@ def test_where_nothing_missing_is_adequate_an_effect_that_fails_on_the_held_out_
     assert "held-out" in found.why
 
 
+def test_what_noise_does_not_lend_an_effect_is_missing_all_the_same() -> None:
+    """A law outside the library: adhesion led by 33.7 in ln evidence, failed on the held-out landing, and nothing missing had p = 0.049."""
+    found = judge([null(FINE), Judged("a", 33.7, FINE, 1.9, 1e-4)], LIBRARY)
+    assert found.verdict == "none_of_my_effects"
+    assert "held-out" in found.why
+
+
 def test_two_effects_at_once_are_named_where_no_single_one_does() -> None:
     pair = Judged("a + b", 90.0, FINE)
     assert named(null(POOR), Judged("a", 60.0, POOR), Judged("b", 20.0, POOR), pair) == ("effects", ("a", "b"))
