@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,11 +141,18 @@ def _square(rows: Sequence[Array], rho: float, trend: int) -> tuple[float, float
         white = _white(u, rho)
         volume += (len(u) - 1) * np.log(1.0 - rho**2)
         if trend:
-            free, triangle = np.linalg.qr(_white(np.vander(np.linspace(-1.0, 1.0, len(u)), trend), rho))
+            free, own = _free(len(u), trend, rho)
             white = white - free @ (free.T @ white)
-            volume += 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)))))
+            volume += own
         square += float(white @ white)
     return square, volume
+
+
+@lru_cache(maxsize=1024)
+def _free(count: int, terms: int, rho: float) -> tuple[Array, float]:
+    """Orthonormal columns of the polynomials as white numbers, and the logarithm of their volume."""
+    free, triangle = np.linalg.qr(_white(np.vander(np.linspace(-1.0, 1.0, count), terms), rho))
+    return free, 2.0 * float(np.sum(np.log(np.abs(np.diag(triangle)))))
 
 
 def _white(values: Array, rho: float) -> Array:
