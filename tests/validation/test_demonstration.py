@@ -16,7 +16,8 @@ pytestmark = pytest.mark.slow
 
 CASES = {  # the dearest first
     "a law outside the library": Case("outside_yaw_angle", 300.0, 14, "none_of_my_effects"),
-    "one of two that look alike": Case("telemetry_lowpass", 30.0, 15, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
+    "one of two that look alike": Case("clock_offset", 30.0, 18, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
+    "the other of the two, where noise misleads": Case("telemetry_lowpass", 30.0, 15, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
     "a force in the soil": Case("soil_damping", 150.0, 11, "effect", ("soil_damping",)),
     "a sensor's axes": Case("gyro_cross_axis", 150.0, 12, "effect", ("gyro_cross_axis",)),
     "nothing": Case("", 0.0, 13, "nothing_missing"),
@@ -50,8 +51,8 @@ def diagnosed(folder: Path) -> Diagnosis:
 
 
 MISSED = {
-    "one of two that look alike": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.98: χ² 859.5 of 920 "
-    "against 871.2, 4.0 ahead in ln evidence; without noise the filter is 3 better in φ: no twin by its clean data",
+    "the other of the two, where noise misleads": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.98:"
+    " χ² 859.5 of 920 against 871.2, 4.0 ahead in ln evidence; without noise the filter is 3 better in φ: no twin by its clean data",
 }
 """Cases that a search is known to get wrong, with what it said; not in CI, ten minutes of a core each."""
 
