@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from math import isfinite
 
+import numpy as np
+
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import NamedEffect, Outcome
 from orchestrator.diagnosis.report.numbers import chance, number, percent, shown_unit, spelt, with_sigma
+from orchestrator.diagnosis.verdict import SURE
 
 LABELS = {
     "nothing_missing": "nothing missing",
@@ -87,7 +90,7 @@ def title_of(outcome: Outcome, name: str) -> str:
 
 def inside(title: str) -> str:
     """A title in the middle of a sentence: Soil damping -> soil damping, RCS pulse stays."""
-    return title[:1].lower() + title[1:] if title[1:2].islower() else title
+    return title[:1].lower() + title[1:] if title[1:2].islower() or title[1:2] == " " else title
 
 
 def listed(items: list[str], last: str = "and") -> str:
@@ -108,12 +111,24 @@ def _missing(outcome: Outcome) -> str:
 
 
 def _cannot_tell(outcome: Outcome) -> str:
-    names = [inside(title_of(outcome, name)) for name in outcome.cannot_tell.names]
+    common = in_every_pair(outcome)
+    names = [inside(title_of(outcome, name)) for name in outcome.cannot_tell.names if name not in common]
+    sure = f"Missing: {listed([inside(title_of(outcome, name)) for name in common])}, and one effect more. " if common else ""
     told = "its candidates apart" if not names else f"whether it is {names[0]}"
     if len(names) > 1:
         told = f"{names[0]} from {listed(names[1:], 'or')}"
     first = [f": measure {m.channel}{_within(m.channel, m.sigma)}" for m in outcome.cannot_tell.measure[:1]]
-    return f"These data cannot tell {told}{''.join(first)}."
+    return f"{sure}These data cannot tell {told}{''.join(first)}."
+
+
+def in_every_pair(outcome: Outcome) -> list[str]:
+    """Effects in each of the pairs that hold 0.9 of the probability; none where one of these is no pair."""
+    ranked = sorted((c for c in outcome.candidates if c.name != NULL.name), key=lambda c: -c.probability)
+    held = np.cumsum([c.probability for c in ranked])
+    parts = [parts_of(c.name) for c in ranked[: int(np.searchsorted(held, SURE)) + 1]]
+    if any(len(names) != 2 for names in parts):
+        return []
+    return [name for name in outcome.cannot_tell.names if parts and all(name in names for names in parts)]
 
 
 def _within(channel: str, sigma: float) -> str:
