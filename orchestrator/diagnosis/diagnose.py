@@ -248,8 +248,8 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
         best = state.fits[whole]
         outcome.effects = [_named(diagnosis, n, whole, judgement.probabilities[whole]) for n in judgement.names]
     if judgement.verdict == "cannot_tell":
-        tracks = measures_between(state, judgement.names)
-        outcome.cannot_tell = CannotTell(list(judgement.names), tracks)
+        tracks = measures_between(state, judgement.answers)
+        outcome.cannot_tell = CannotTell(list(judgement.names), tracks, list(judgement.answers))
     if judgement.why:
         outcome.warnings.append(judgement.why)
     outcome.not_excited = [name for name in not_excited(state) if name in diagnosis.effects]

@@ -61,6 +61,8 @@ class CannotTell:
 
     names: list[str] = field(default_factory=list)
     measure: list[Measure] = field(default_factory=list)
+    answers: list[str] = field(default_factory=list)
+    """What the names stand in: an effect alone, or two as "a + b"."""
 
 
 @dataclass

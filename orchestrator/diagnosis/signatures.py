@@ -42,7 +42,7 @@ def not_excited(state: State) -> list[str]:
 
 
 def measures_between(state: State, names: Sequence[str]) -> list[Measure]:
-    """For the two most probable of the names: the channel whose predictions differ most, and how well it must be measured."""
+    """For the two most probable of the hypotheses: the channel whose predictions differ most, and how well it must be measured."""
     known = [n for n in names if n in state.fits and n != NULL.name][:2]
     if len(known) < 2:
         return []

@@ -81,6 +81,8 @@ class Judgement:
     names: tuple[str, ...]
     probabilities: Mapping[str, float]
     why: str = ""
+    answers: tuple[str, ...] = ()
+    """Hypotheses, pairs among them, between which the data cannot tell, most probable first; the names are those of their effects."""
 
 
 def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
@@ -109,4 +111,4 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     if len(named) == 1 or (len(standing) == 1 and found[standing[0]] >= SURE):
         return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
     names = tuple(dict.fromkeys(part for n in named for part in parts_of(n)))
-    return Judgement("cannot_tell", names, found)
+    return Judgement("cannot_tell", names, found, answers=named)

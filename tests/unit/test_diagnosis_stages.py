@@ -5,14 +5,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnosis_samples import one_landing
+from diagnosis_samples import Ringing, coordinate, one_landing, ringing_landing
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis import stages
-from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
+from orchestrator.diagnosis.fit import Fit, seen_from
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, joined
 from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import Noise
 from orchestrator.diagnosis.observation import Track
+from orchestrator.diagnosis.problem import Model
+from orchestrator.diagnosis.signatures import measures_between
 from orchestrator.diagnosis.stages import State, hear_noise, run_search, try_pairs
 
 Array = NDArray[np.float64]
@@ -142,6 +145,40 @@ def test_a_second_effect_that_only_shows_where_the_first_should_stand_is_let_go(
     state = State(setup, Shown(), fit(100.0), {NULL.name: fit(100.0), EFFECT: fit(60.0)}, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
     try_pairs(state)
     assert {name: it.objective for name, it in state.fits.items()} == {NULL.name: 100.0, EFFECT: 29.5}
+
+
+NUISANCE = coordinate("v")
+DRAG, LIFT, TILT = (Hypothesis(name, (coordinate(name),)) for name in ("drag", "lift", "tilt"))
+RINGS = ringing_landing({"drag": 0.3, "lift": 0.2})
+
+
+def pair_at(first: Hypothesis, second: Hypothesis, z: tuple[float, float, float]) -> Fit:
+    model, at = Model(RINGS, (NUISANCE, *first.coordinates, *second.coordinates), Ringing()), np.array(z)
+    predicted = model.predict(at)
+    assert predicted is not None
+    return seen_from(model, at, predicted, model.slopes(at, predicted))
+
+
+@pytest.mark.parametrize(("drag", "taken"), [(0.3, True), (0.0, False)], ids=["better", "worse"])
+def test_a_pair_the_other_way_round_takes_its_own_place_where_it_is_better(drag: float, taken: bool) -> None:
+    here = joined(DRAG, LIFT)
+    before = pair_at(DRAG, LIFT, (0.0, 0.1, 0.2))
+    setup, search = SimpleNamespace(landings=RINGS), SimpleNamespace(nuisances=(NUISANCE,))
+    state = State(setup, search, before, {here.name: before}, [here])  # type: ignore[arg-type]
+    stages._take_in(state, joined(LIFT, DRAG), pair_at(LIFT, DRAG, (0.0, 0.2, drag)))
+    assert [h.name for h in state.hypotheses] == [here.name]
+    assert list(state.fits) == [here.name]
+    assert state.fits[here.name].coordinates == (NUISANCE, *here.coordinates)
+    assert state.fits[here.name].z == pytest.approx([0.0, 0.3, 0.2] if taken else [0.0, 0.1, 0.2])
+
+
+def test_what_would_decide_between_pairs_is_where_the_pairs_differ() -> None:
+    """Drag and lift, or drag and tilt: y alone has the tilt, and more of it than x has of the lift."""
+    fits = {joined(DRAG, h).name: pair_at(DRAG, h, (0.0, 0.3, 0.05)) for h in (LIFT, TILT)}
+    state = State(SimpleNamespace(landings=RINGS), None, fits["drag + lift"], fits)  # type: ignore[arg-type]
+    first = measures_between(state, ["drag + lift", "drag + tilt"])[0]
+    assert first.channel == "y"
+    assert first.reason.startswith("the two best, drag + lift and drag + tilt, differ most there")
 
 
 class Racing(Scripted):

@@ -74,6 +74,12 @@ def test_two_effects_at_once_are_named_where_no_single_one_does() -> None:
     assert named(null(POOR), Judged("a", 60.0, POOR), Judged("b", 20.0, POOR), pair) == ("effects", ("a", "b"))
 
 
+def test_pairs_that_cannot_be_told_apart_are_the_answers_their_effects_the_names() -> None:
+    found = judge([null(POOR), Judged("a + b", 90.0, FINE), Judged("a + c", 89.9, FINE), Judged("a", 50.0, POOR)], LIBRARY)
+    assert (found.verdict, found.names) == ("cannot_tell", ("a", "b", "c"))
+    assert found.answers == ("a + b", "a + c")
+
+
 def test_a_pair_must_explain_more_than_a_single_effect_by_enough() -> None:
     """There are some four hundred times as many pairs as effects, a twentieth of the prior for them all: 6 in ln evidence."""
     assert named(null(POOR), Judged("a", 60.0, FINE), Judged("a + b", 61.0, FINE)) == ("effect", ("a",))

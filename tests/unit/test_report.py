@@ -101,18 +101,18 @@ def test_every_verdict_has_its_sentence_first_and_a_page(verdict: str, tmp_path:
     assert "prove" not in text
 
 
-def test_what_is_in_every_pair_that_is_left_is_said_to_be_missing() -> None:
+def test_what_is_in_every_pair_that_is_left_is_said_to_be_missing(tmp_path: Path) -> None:
     told = outcome("cannot_tell")
-    one = told.candidates[0]
     told.cannot_tell.names = ["soil_damping", "step_+Y", "step_-Z"]
     told.titles |= {"step_+Y": "A step under pad +Y", "step_-Z": "A step under pad -Z"}
-    pairs = [replace(one, name=f"soil_damping + {step}", probability=p) for step, p in (("step_+Y", 0.51), ("step_-Z", 0.49))]
-    told.candidates = [*pairs, replace(one, probability=0.0)]
+    told.cannot_tell.answers = ["soil_damping + step_+Y", "soil_damping + step_-Z"]
     assert verdict_sentence(told).startswith(
         "Missing: soil damping at all pads, and one effect more."
         " These data cannot tell a step under pad +Y from a step under pad -Z: measure"
     )
-    told.candidates = [pairs[0], replace(one, probability=0.49)]
+    page = read(write_report(tmp_path, told, []))
+    assert "What would decide between a step under pad +Y and a step under pad -Z" in "".join(page.texts).replace("\u00a0", " ")
+    told.cannot_tell.answers = ["soil_damping + step_+Y", "soil_damping"]
     assert verdict_sentence(told).startswith("These data cannot tell soil damping at all pads from a step")
 
 

@@ -52,7 +52,7 @@ def _told(outcome: Outcome) -> dict[str, Any]:
         "caution": words.caution(outcome),
         "next": words.next_step(outcome),
         "command": words.command(outcome),
-        "undecided": words.listed([words.inside(words.title_of(outcome, name)) for name in outcome.cannot_tell.names]),
+        "undecided": words.listed(words.undecided(outcome)),
         "gaps": _gaps(outcome),
         "windows": sorted(strength, key=lambda w: -w.sigmas) + [w for w in outcome.where if not is_known(w.sigmas)],
         "candidates": ranked(outcome.candidates),

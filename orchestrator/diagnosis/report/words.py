@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from math import isfinite
 
-import numpy as np
-
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import NamedEffect, Outcome
 from orchestrator.diagnosis.report.numbers import chance, number, percent, shown_unit, spelt, with_sigma
-from orchestrator.diagnosis.verdict import SURE
 
 LABELS = {
     "nothing_missing": "nothing missing",
@@ -111,9 +108,8 @@ def _missing(outcome: Outcome) -> str:
 
 
 def _cannot_tell(outcome: Outcome) -> str:
-    common = in_every_pair(outcome)
-    names = [inside(title_of(outcome, name)) for name in outcome.cannot_tell.names if name not in common]
-    sure = f"Missing: {listed([inside(title_of(outcome, name)) for name in common])}, and one effect more. " if common else ""
+    common, names = [inside(title_of(outcome, name)) for name in in_every_pair(outcome)], undecided(outcome)
+    sure = f"Missing: {listed(common)}, and one effect more. " if common else ""
     told = "its candidates apart" if not names else f"whether it is {names[0]}"
     if len(names) > 1:
         told = f"{names[0]} from {listed(names[1:], 'or')}"
@@ -122,13 +118,17 @@ def _cannot_tell(outcome: Outcome) -> str:
 
 
 def in_every_pair(outcome: Outcome) -> list[str]:
-    """Effects in each of the pairs that hold 0.9 of the probability; none where one of these is no pair."""
-    ranked = sorted((c for c in outcome.candidates if c.name != NULL.name), key=lambda c: -c.probability)
-    held = np.cumsum([c.probability for c in ranked])
-    parts = [parts_of(c.name) for c in ranked[: int(np.searchsorted(held, SURE)) + 1]]
-    if any(len(names) != 2 for names in parts):
+    """Effects in every answer that is left; none where an answer is no pair."""
+    answers = [parts_of(answer) for answer in outcome.cannot_tell.answers]
+    if any(len(parts) != 2 for parts in answers):
         return []
-    return [name for name in outcome.cannot_tell.names if parts and all(name in names for names in parts)]
+    return [name for name in outcome.cannot_tell.names if answers and all(name in parts for parts in answers)]
+
+
+def undecided(outcome: Outcome) -> list[str]:
+    """The effects, in the middle of a sentence, that the data cannot tell apart."""
+    common = in_every_pair(outcome)
+    return [inside(title_of(outcome, name)) for name in outcome.cannot_tell.names if name not in common]
 
 
 def _within(channel: str, sigma: float) -> str:
