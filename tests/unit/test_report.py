@@ -110,10 +110,10 @@ def test_what_is_in_every_pair_that_is_left_is_said_to_be_missing(tmp_path: Path
         "Missing: soil damping at all pads, and one effect more."
         " These data cannot tell a step under pad +Y from a step under pad -Z: measure"
     )
+    alone = replace(told, cannot_tell=replace(told.cannot_tell, answers=["soil_damping + step_+Y", "soil_damping"]))
+    assert verdict_sentence(alone).startswith("These data cannot tell soil damping at all pads from a step")
     page = read(write_report(tmp_path, told, []))
     assert "What would decide between a step under pad +Y and a step under pad -Z" in "".join(page.texts).replace("\u00a0", " ")
-    told.cannot_tell.answers = ["soil_damping + step_+Y", "soil_damping"]
-    assert verdict_sentence(told).startswith("These data cannot tell soil damping at all pads from a step")
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)
