@@ -42,7 +42,7 @@ def scores_of(keys: Path, results: Path, recompute: bool, told: Callable[[str], 
     return found
 
 
-def report(scores: Sequence[Score], keys: Path, out: Path, title: str = "") -> str:
+def report(scores: Sequence[Score], out: Path, title: str = "") -> str:
     """DIR/score.md, score.json and the figure; the Markdown."""
     out.mkdir(parents=True, exist_ok=True)
     psychometric(scores, out / CURVE)
@@ -51,7 +51,7 @@ def report(scores: Sequence[Score], keys: Path, out: Path, title: str = "") -> s
     parts += ["Parameters of rightly named effects:\n", markdown(targets.parameter_errors(scores))]
     wrong = targets.confusion(scores)
     parts += ["Every case answered otherwise than it should be:\n", markdown(wrong) if wrong else "None.\n"]
-    parts += [_too_small(keys)]
+    parts += [_too_small(scores)]
     text = "\n".join(part for part in parts if part)
     (out / "score.md").write_text(text, "utf-8")
     write_json(out, "score", [_plain(asdict(score)) for score in scores])
@@ -65,9 +65,9 @@ def _head(scores: Sequence[Score]) -> str:
     return f"{len(scores)} cases{middle}; {unjudged} without a verdict on effects (they count against every target).\n"
 
 
-def _too_small(keys: Path) -> str:
+def _too_small(scores: Sequence[Score]) -> str:
     """Effects that were drawn and could not reach the asked energy within three prior standard deviations."""
-    counts = Counter(it["effect"] for path in keys.glob("[0-9]*.json") for it in (load(path) or {}).get("skipped", []))
+    counts = Counter(name for score in scores for name in score.skipped)
     shown = ", ".join(f"{name} {count}" for name, count in counts.most_common())
     return f"Drawn, but not detectable at the energy asked for (times): {shown or 'none'}.\n"
 

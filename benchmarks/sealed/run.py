@@ -3,6 +3,7 @@
     python benchmarks/sealed/run.py make  --set SET --keys KEYS --cases 100 --seed 12345
     python benchmarks/sealed/run.py run   --set SET --results RESULTS --jobs 2
     python benchmarks/sealed/run.py score --keys KEYS --results RESULTS --out DIR
+    python benchmarks/sealed/run.py pool  A/score.json B/score.json --out DIR
 
 `run` is not told where the keys are; the seed belongs to the keys, since it makes the same cases again.
 Each command goes on where it stopped.
@@ -23,6 +24,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from sealed import diagnoses
 from sealed.kinds import SHARES
 from sealed.make import UnmadeError, make
+from sealed.pool import pooled
 from sealed.report import UnsealedError, report, scores_of
 from sealed.sealing import COMMAND, Diagnosis
 from sealed.vehicle import ZUPP
@@ -33,7 +35,7 @@ Told = Callable[[], None]
 def main() -> None:
     options = _parser().parse_args()
     try:
-        code = {"make": _make, "run": _run, "score": _score}[options.command](options)
+        code = {"make": _make, "run": _run, "score": _score, "pool": _pool}[options.command](options)
     except (UnmadeError, UnsealedError, ValueError) as error:
         print(error, file=sys.stderr)
         code = 2
@@ -63,6 +65,9 @@ def _parser() -> argparse.ArgumentParser:
     scoring.add_argument("--results", type=Path, required=True)
     scoring.add_argument("--out", type=Path, required=True)
     scoring.add_argument("--stated-closure", action="store_true", help="take the gap's closure as each diagnosis states it")
+    pooling = commands.add_parser("pool", help="the table of several sets' scores, all by one method")
+    pooling.add_argument("scores", type=Path, nargs="+", metavar="SCORE.json", help="what `score` wrote")
+    pooling.add_argument("--out", type=Path, required=True)
     return parser
 
 
@@ -86,7 +91,12 @@ def _score(options: argparse.Namespace) -> int:
         scores = scores_of(options.keys, options.results, not options.stated_closure, lambda _: told())
     if not scores:
         raise ValueError(f"{options.results}: holds no result of a case of {options.keys}; diagnose the set first")
-    print(report(scores, options.keys, options.out))
+    print(report(scores, options.out))
+    return 0
+
+
+def _pool(options: argparse.Namespace) -> int:
+    print(report(pooled(options.scores), options.out))
     return 0
 
 

@@ -44,6 +44,12 @@ class Score:
     """Right form or its class."""
     seconds: float = math.nan
     simulations: float = math.nan
+    by: str = ""
+    """Commit of the method."""
+    seed: tuple[int, ...] = ()
+    """Makes the case again; no two cases share one."""
+    skipped: tuple[str, ...] = ()
+    """Effects that were drawn for it and not detectable."""
 
 
 def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None, closure: float | None = None) -> Score:
@@ -60,6 +66,7 @@ def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None
         len(set(truth) & set(named)), _number(closure if closure is not None else stated), errors, pulls,
         right_port(said, key) if outside else None, right_form(said, key) if outside else None,
         _number((run or {}).get("seconds")), _number((run or {}).get("simulations", said.get("simulations"))),
+        str((run or {}).get("by", "")), tuple(key.get("seed", ())), tuple(it["effect"] for it in key.get("skipped", ())),
     )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
 from sealed.kinds import SHARES, counts, plans
 from sealed.make import FINE, made, make, scenes_of
+from sealed.pool import pooled
 from sealed.vehicle import ZUPP, Vehicle
 from sealed.wilson import wilson
 
@@ -268,7 +269,47 @@ def test_the_table_has_every_target_and_says_what_was_met(tmp_path: Path) -> Non
     assert rows["two effects: both"]["met"] == "no case"
     assert rows["named with probability 0.9 or more and right"]["n"] == 2
     assert [row["case"] for row in targets.confusion(scores)] == ["1"]
-    (tmp_path / "keys").mkdir()
-    text = report.report(scores, tmp_path / "keys", tmp_path)
+    text = report.report(scores, tmp_path)
     assert "| right name at λ 49 | at least 0.92 | 1 | 1" in text
     assert (tmp_path / report.CURVE).stat().st_size > 5000
+
+
+# Pooling
+
+
+def part(folder: Path, seed: int, by: str = "abc", cases: int = 2) -> Path:
+    """A score.json of so many cases of one set."""
+    scores = [
+        scoring.scored(f"{i:03}", key("single 49", "a") | {"seed": [seed, 1 + i, 0], "skipped": [{"effect": "b"}]}, named("a"), {"by": by})
+        for i in range(cases)
+    ]
+    report.report(scores, folder)
+    return folder / "score.json"
+
+
+def test_scores_of_several_sets_make_one_table(tmp_path: Path) -> None:
+    """Also those whose cases have the same numbers; what a file cannot hold, NaN, comes back."""
+    found = pooled([part(tmp_path / "one", 1), part(tmp_path / "two", 2, cases=3)])
+    assert [score.case for score in found] == ["one/000", "one/001", "two/000", "two/001", "two/002"]
+    assert found[0].truth == ("a",)
+    assert np.isnan(found[0].seconds)
+    rows = {row["on sealed cases"]: row for row in targets.table(found)}
+    assert rows["right name at λ 49"]["n"] == 5
+    assert "(times): b 5." in report.report(found, tmp_path / "all")
+
+
+def test_scores_of_two_methods_are_not_pooled(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="diagnosed by abc and def: scores of one method only"):
+        pooled([part(tmp_path / "one", 1), part(tmp_path / "two", 2, by="def")])
+
+
+def test_a_case_counts_once(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="two/000 is one/000: one case, made with seed 1"):
+        pooled([part(tmp_path / "one", 1), part(tmp_path / "two", 1)])
+
+
+@pytest.mark.parametrize("text", ["", "{}", '[{"case": "000"}]'])
+def test_what_is_no_score_is_refused_by_name(tmp_path: Path, text: str) -> None:
+    (tmp_path / "score.json").write_text(text)
+    with pytest.raises(ValueError, match=r"score\.json: "):
+        pooled([tmp_path / "score.json"])
