@@ -24,6 +24,7 @@ TRIES = 3  # of a step, each 0.35 times the last
 CHANCE = 2.0  # of φ: what the integrator may hide of a step
 AGAIN, GAIN = 4, 1.0  # refinements of a fit at most, and of φ that one must bring to be followed by another
 POOR = 0.3  # of what was promised: the slopes are no longer those of this place
+HOPE = 2.5  # times what the slopes promise of a step: what a fit may still gain that is to come below a ceiling
 
 
 @dataclass
@@ -122,11 +123,13 @@ def fitted(
     renew: Sequence[int] = (),
     renewals: int = 1,
     beside: Place | None = None,
+    ceiling: float = np.inf,
 ) -> Fit | None:
-    """The model fitted from z with slopes made there or near; None where nothing there can be flown.
+    """The model fitted from z with slopes made there or near; None where nothing there can be flown, or all hope is gone.
 
     renew     columns to make anew where the slopes prove poor, at most `renewals` times
     beside    where all is flown beside; the start, without
+    ceiling   of φ: who after a first step is further above it than the slopes let hope for is given up
     """
     z = clipped(model.coordinates, z)
     beside = model.place(z) if beside is None else beside
@@ -134,12 +137,14 @@ def fitted(
     if predicted is None:
         return None
     slopes, residual = slopes.copy(), model.residual(predicted)
-    for _ in range(steps):
+    for k in range(steps):
         jacobian = model.whitened(slopes, predicted)
         step = gauss_newton_step(jacobian, residual, z, model.coordinates, temper)
         promised = objective(residual, z, temper) - objective(residual - jacobian @ step, z + step, temper)
         if promised < ENOUGH:
             break
+        if k > 0 and objective(residual, z, temper) - HOPE * promised > ceiling:
+            return None
         made = _made(model, beside, z, predicted, residual, slopes, step, temper, promised)
         gained = 0.0
         if made is not None:

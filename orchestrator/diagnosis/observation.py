@@ -138,6 +138,15 @@ class Observation:
         rows = [self._track(t, course, values) for t in self.tracks]
         return np.concatenate([*rows, np.array([self._read(r, course, values) for r in self.readings])])
 
+    def predicted_dated(self, course: Course, dated: Sequence[Mapping[str, float]]) -> Array:
+        """(k, n): `predicted` of one course under several datings, each column interpolated once."""
+        rows = []
+        for track in self.tracks:
+            late = np.array([self.late(track, values) for values in dated])
+            rows.append(sampled(course, track.column, track.times - late[:, None]))
+        last = [[self._read(r, course, values) for r in self.readings] for values in dated]
+        return np.hstack([*rows, np.array(last).reshape(len(dated), len(self.readings))])
+
     def residual(self, predicted: Array) -> Array:
         """White residual: data less prediction, in standard deviations. An interval counts only outside its ends."""
         parts = [w(t.readings - predicted[p]) for t, w, p in zip(self.tracks, self.whitenings, self.places, strict=False)]

@@ -9,7 +9,7 @@ from diagnosis_samples import RINGING, Line, Ringing, coordinate, one_landing, r
 from numpy.typing import NDArray
 from scipy.integrate import dblquad, quad
 
-from orchestrator.diagnosis.fit import broyden, fitted, refined, seen_from, settled
+from orchestrator.diagnosis.fit import HOPE, broyden, fitted, gauss_newton_step, objective, refined, seen_from, settled
 from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.observation import Reading
 from orchestrator.diagnosis.problem import ABOUT, HERE, Model
@@ -159,6 +159,22 @@ def test_broyden_s_formula_makes_slopes_meet_the_move_and_leaves_others_alone() 
     np.testing.assert_allclose(slopes @ move, change)
     across = np.cross(move, [1.0, 0.0, 0.0])
     np.testing.assert_allclose(slopes @ across, before @ across)
+
+
+@pytest.mark.parametrize(("above", "given_up"), [(-0.5, True), (0.5, False)])
+def test_a_fit_is_given_up_where_the_slopes_leave_no_hope_of_a_ceiling(above: float, given_up: bool) -> None:
+    """Eight prior sigmas away, so that a step is cut short: after the first, which is always flown, HOPE times what the next promises."""
+    model = line((0.5, 0.3), 0.1, truth=(4.0, -0.3))
+    z = np.zeros(2)
+    predicted = model.predict(z)
+    assert predicted is not None
+    slopes = model.slopes(z, predicted)
+    one = fitted(model, z, slopes, predicted, steps=1)
+    assert one is not None
+    step = gauss_newton_step(one.jacobian, one.residual, one.z, model.coordinates, 1.0)
+    promised = one.objective - objective(one.residual - one.jacobian @ step, one.z + step)
+    found = fitted(model, z, slopes, predicted, steps=2, ceiling=one.objective - HOPE * promised + above)
+    assert (found is None) == given_up
 
 
 def test_what_cannot_be_flown_gives_no_fit() -> None:

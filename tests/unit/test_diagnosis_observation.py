@@ -85,6 +85,18 @@ def test_a_clock_offset_moves_its_own_series_and_the_time_origin_all() -> None:
     np.testing.assert_allclose(both[9:], times - 0.15)
 
 
+def test_several_datings_of_one_course_are_those_of_each() -> None:
+    """To the bit: which dating a search takes must not depend on how many were asked for."""
+    times = np.linspace(-0.3, 2.3, 11)
+    readings = [Reading("r", "a", 0.0, 1.0), Reading("contact_time.+Y", "touch", 0.0, 1.0, kind="time")]
+    one = Observation([track(times, "rates.roll"), track(times, "attitude.roll"), track(times, "y", "other")], readings)
+    columns = {"rates.roll": np.sin(3.0 * GRID), SPIN[2]: 3.0 * np.cos(3.0 * GRID), "attitude.roll": GRID**2, "y": np.cos(GRID)}
+    course = Course(GRID, columns, {"a": 0.7, "touch": 0.25})
+    dated = [{ORIGIN: 0.03}, {ORIGIN: -0.2, "clock.other": 0.1}, {}]
+    found = one.predicted_dated(course, dated)
+    assert np.array_equal(found, [one.predicted(course, values) for values in dated])
+
+
 def test_before_contact_the_vehicle_flies_free() -> None:
     rate = np.cos(GRID)
     course = {"rates.roll": rate, SPIN[2]: -np.sin(GRID), "attitude.roll": 0.3 + 0.7 * GRID}

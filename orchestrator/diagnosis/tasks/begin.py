@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import SHARED, Coordinate
+from orchestrator.diagnosis.coordinates import SHARED, Coordinate, applied
 from orchestrator.diagnosis.fit import Fit, fitted
 from orchestrator.diagnosis.landing import Course, Lander
 from orchestrator.diagnosis.observation import ORIGIN
@@ -42,19 +43,24 @@ class Timed:
             course = model.course(k, z, LATER)
             if course is None:
                 return None
-            place, worth = self._clock(k), []
-            for time in TIMES if place is not None else ():
-                z[place] = time
-                worth.append(self._missed(model, k, z, course) / 9.0 + time * time)
-            if place is not None:
-                z[place] = TIMES[int(np.argmin(worth))]
-            total += self._missed(model, k, z, course) / 9.0
+            place, values, base = self._clock(k), model.values(z, k), self.landings.bases[k]
+            if place is None:
+                total += self._missed(model, k, course, [values])[0] / 9.0
+                continue
+            clock = (self.coordinates[place],)
+            dated = [values | applied(base, clock, np.array([time]), k) for time in TIMES]
+            missed = self._missed(model, k, course, dated)
+            best = int(np.argmin([one / 9.0 + time * time for one, time in zip(missed, TIMES, strict=True)]))
+            z[place] = TIMES[best]
+            total += missed[best] / 9.0
         return total + float(z @ z), z
 
-    def _missed(self, model: Model, k: int, z: Array, course: Course) -> float:
+    def _missed(self, model: Model, k: int, course: Course, dated: Sequence[Mapping[str, float]]) -> list[float]:
+        """χ² of landing k's course under each dating."""
         observation = self.landings.observations[k]
-        missed = observation.residual(observation.predicted(course, model.values(z, k))) * model.weights[self.landings.parts[k]]
-        return float(missed @ missed)
+        weights = model.weights[self.landings.parts[k]]
+        found = [observation.residual(predicted) * weights for predicted in observation.predicted_dated(course, dated)]
+        return [float(missed @ missed) for missed in found]
 
     def _clock(self, k: int) -> int | None:
         """The coordinate that is this landing's zero of the clock alone."""

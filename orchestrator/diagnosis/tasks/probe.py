@@ -80,7 +80,7 @@ class Probe:
         around = Model(self.landings, (*nuisances, *held), model.lander, self.point.horizon)
         if self._hopeless(around, base, slopes, own, ceiling):
             return None
-        fit = fitted(around, np.concatenate([self.point.z, own]), slopes, steps=4, beside=base)
+        fit = fitted(around, np.concatenate([self.point.z, own]), slopes, steps=4, beside=base, ceiling=ceiling)
         if fit is None or fit.objective > ceiling:
             return None
         mine = range(count, len(self.coordinates))
