@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import MISSING, fields
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
 
 from sealed.scoring import Score
+
+ROWS = TypeAdapter(list[Score])
 
 
 def pooled(paths: Sequence[Path]) -> list[Score]:
@@ -17,7 +20,7 @@ def pooled(paths: Sequence[Path]) -> list[Score]:
 
     Raises ValueError where two methods judged them, a case is in twice, or a file holds no scores.
     """
-    found = [_read(path, row) for path in paths for row in _rows(path)]
+    found = [replace(score, case=f"{path.parent.name}/{score.case}") for path in paths for score in _read(path)]
     if not found:
         raise ValueError(f"{', '.join(map(str, paths))}: no scores")
     methods = sorted({score.by for score in found})
@@ -32,21 +35,13 @@ def pooled(paths: Sequence[Path]) -> list[Score]:
     return found
 
 
-def _rows(path: Path) -> list[dict[str, Any]]:
+def _read(path: Path) -> list[Score]:
     try:
         rows = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
+        return ROWS.validate_python([{"closure": math.nan} | {k: v for k, v in row.items() if v is not None} for row in rows])
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        raise ValueError(f"{path}: {place}: {first['msg']}; give the score.json that `score` wrote") from None
+    except (OSError, ValueError, TypeError, AttributeError) as error:
         raise ValueError(f"{path}: cannot be read as scores: {error}") from None
-    needed = {field.name for field in fields(Score) if field.default is MISSING and field.default_factory is MISSING}
-    if not isinstance(rows, list) or not all(isinstance(row, dict) and needed <= row.keys() for row in rows):
-        raise ValueError(f"{path}: not a list of scores; give the score.json that `score` wrote")
-    return rows
-
-
-def _read(path: Path, row: dict[str, Any]) -> Score:
-    known = {name: row[name] for name in (field.name for field in fields(Score)) if name in row}
-    for name in ("closure", "seconds", "simulations"):
-        known[name] = math.nan if known.get(name) is None else float(known[name])
-    for name in ("truth", "named", "seed", "skipped"):
-        known[name] = tuple(known.get(name, ()))
-    return Score(**known | {"case": f"{path.parent.name}/{row['case']}"})

@@ -96,6 +96,8 @@ def _score(options: argparse.Namespace) -> int:
 
 
 def _pool(options: argparse.Namespace) -> int:
+    if options.out.resolve() in {path.resolve().parent for path in options.scores}:
+        raise ValueError(f"{options.out}: holds scores to be pooled, which the table's would replace; give another --out")
     print(report(pooled(options.scores), options.out))
     return 0
 

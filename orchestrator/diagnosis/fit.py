@@ -140,15 +140,16 @@ def fitted(
     for k in range(steps):
         jacobian = model.whitened(slopes, predicted)
         step = gauss_newton_step(jacobian, residual, z, model.coordinates, temper)
-        promised = objective(residual, z, temper) - objective(residual - jacobian @ step, z + step, temper)
+        now = objective(residual, z, temper)
+        promised = now - objective(residual - jacobian @ step, z + step, temper)
         if promised < ENOUGH:
             break
-        if k > 0 and objective(residual, z, temper) - HOPE * promised > ceiling:
+        if k > 0 and now - HOPE * promised > ceiling:
             return None
         made = _made(model, beside, z, predicted, residual, slopes, step, temper, promised)
         gained = 0.0
         if made is not None:
-            gained = objective(residual, z, temper) - objective(made[2], made[0], temper)
+            gained = now - objective(made[2], made[0], temper)
             z, predicted, residual = made
         if gained < POOR * promised:
             if made is None and promised < CHANCE:

@@ -135,8 +135,7 @@ class Observation:
 
     def predicted(self, course: Course, values: Mapping[str, float]) -> Array:
         """The numbers that this course would have left, in their own units; intervals give their final value."""
-        rows = [self._track(t, course, values) for t in self.tracks]
-        return np.concatenate([*rows, np.array([self._read(r, course, values) for r in self.readings])])
+        return np.asarray(self.predicted_dated(course, [values])[0])
 
     def predicted_dated(self, course: Course, dated: Sequence[Mapping[str, float]]) -> Array:
         """(k, n): `predicted` of one course under several datings, each column interpolated once."""
@@ -175,9 +174,6 @@ class Observation:
             return float(column[np.argmax(np.abs(column))])
         late = self.shift + values.get(ORIGIN, 0.0) if reading.kind == "time" else 0.0
         return course.final[reading.column] + late
-
-    def _track(self, track: Track, course: Course, values: Mapping[str, float]) -> Array:
-        return sampled(course, track.column, track.times - self.late(track, values))
 
 
 def of_units(values: Mapping[str, Kept]) -> dict[str, Kept]:
