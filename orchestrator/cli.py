@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
+from typer.core import TyperGroup
 
 from orchestrator.campaign.command import campaign
 from orchestrator.campaign.sensitivity_command import sensitivity
@@ -29,7 +30,19 @@ if TYPE_CHECKING:
     from orchestrator.simulation import Simulation
 
 ABOUT = "Steps the FMUs of a lunar lander's touchdown together and writes up what came of it."
-app = typer.Typer(add_completion=False, no_args_is_help=True, help=ABOUT)
+
+
+class Commands(TyperGroup):
+    """Ctrl-C that no command has answered reaches `main`; typer would end without a word."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise typer.Abort from None
+
+
+app = typer.Typer(cls=Commands, add_completion=False, no_args_is_help=True, help=ABOUT)
 
 ScenarioName = Annotated[str, typer.Argument(help="A scenario file, the bare name of one in scenarios/, or an .ssp.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated; the unit may be a glob.")]

@@ -9,6 +9,7 @@ from orchestrator.fmi.isolated import IsolatedUnit
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.fmi.slave3 import Fmi3Unit
 from orchestrator.fmi.unit import FmuUnit
+from orchestrator.interruption import unbroken
 from orchestrator.master.slave import Interface
 
 
@@ -25,4 +26,5 @@ def load(name: str, interface: Interface, isolate: bool = False) -> FmuUnit | Is
     if isolate:
         return IsolatedUnit(name, interface)
     kind = Fmi3Unit if interface.fmi_version.startswith("3.") else Fmi2Unit
-    return kind(name, interface.path, interface)
+    with unbroken():
+        return kind(name, interface.path, interface)

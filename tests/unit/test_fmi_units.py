@@ -1,6 +1,7 @@
 """FMUs behind the master's protocol: reading, stepping, states, messages, and what happens when they misbehave."""
 
 import shutil
+import signal
 import zipfile
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from fmi_samples import oscillator, sample_fmus
 from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.checkpoint.schedule import Schedule
 from orchestrator.errors import StepError, UnitError
+from orchestrator.fmi import load as loading
 from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.fmi.texts import text_of
@@ -247,3 +249,21 @@ def test_two_instances_of_one_fmu_do_not_share_their_state(tmp_path: Path) -> No
     result = simulation.run()
     assert result.columns["a.position"][-1] != result.columns["b.position"][-1]
     simulation.close()
+
+
+def test_an_interrupt_while_a_unit_is_loaded_waits_until_it_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Raised inside, it was "body: cannot be instantiated (... KeyboardInterrupt())", where Ctrl-C came in the first seconds of a run."""
+    loaded: list[str] = []
+
+    def slow(name: str, *_: object) -> None:
+        signal.raise_signal(signal.SIGINT)
+        loaded.append(name)
+
+    monkeypatch.setattr(loading, "Fmi2Unit", slow)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            loading.load("a", read_interface(sample_fmus() / "SampleMass.fmu"))
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert loaded == ["a"]
