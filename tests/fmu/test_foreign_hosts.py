@@ -79,7 +79,7 @@ def expected(fmus: dict[str, Path], unpacked: Callable[[Path], Path]) -> dict[st
 @pytest.mark.parametrize("peer", ["libcosim", "ecos"])
 def test_every_unit_gives_in_a_cpp_host_what_it_gives_in_fmpy(peer: str, task: dict[str, Any], expected: dict[str, np.ndarray]) -> None:
     """To 1e-9 of each course's size: the hosts count time otherwise, in nanoseconds or by adding up, and a last bit of it may differ."""
-    outcome = hosts.run_peer(peer, task, timeout=300.0)
+    outcome = hosts.run_peer(peer, task, timeout=1800.0)
     assert outcome.message == ""
     steps = np.rint(np.array(outcome.times) / STEP).astype(int)
     assert steps[-1] >= round(STOP / STEP) - 1      # libcosim stops short of a time it would overstep

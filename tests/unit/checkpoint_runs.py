@@ -14,7 +14,7 @@ WALL_TIME = ("wall_s", "share_outside_units", "unit_seconds_each")
 
 def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments), "--quiet"]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=300)
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=1800)
 
 
 def run(scenario: object, out: Path, *arguments: object) -> Path:
@@ -32,7 +32,7 @@ def stop_a_run(scenario: object, out: Path, number: int, how: signal.Signals, *a
         assert process.poll() is None, "ended before its checkpoint"
         time.sleep(0.001)
     process.send_signal(how)
-    return process.wait(timeout=120)
+    return process.wait(timeout=900)
 
 
 def checkpoint(out: Path, number: int) -> Path:

@@ -42,7 +42,7 @@ def columns(scenario: object, stop: float = 0.05, overrides: Sequence[str] = (),
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "columns.npz"
         asked = json.dumps({"path": str(scenario), "out": str(out), "stop": stop, "overrides": list(overrides), "variant": variant})
-        done = subprocess.run([sys.executable, "-c", _RUN, asked], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([sys.executable, "-c", _RUN, asked], capture_output=True, text=True, timeout=1800)
         assert done.returncode == 0, done.stderr
         with np.load(out) as stored:
             return dict(stored)

@@ -32,7 +32,7 @@ def ran(fmu: Path, folder: Path, *options: str) -> tuple[int, str, list[dict[str
     """Exit code, standard error, findings."""
     report = folder / "report.json"
     command = [sys.executable, "-m", "orchestrator.cli", "check", str(fmu), "--json", str(report), "--timeout", "5", *options]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False)
     findings = json.loads(report.read_text())["findings"] if report.exists() else []
     return done.returncode, done.stderr, findings
 

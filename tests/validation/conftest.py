@@ -31,7 +31,7 @@ class Landing:
         return column
 
 
-def orchestrator(*arguments: object, limit: float = 600.0) -> Completed:
+def orchestrator(*arguments: object, limit: float = 3600.0) -> Completed:
     """The command line in the project's folder; limit: s of wall time."""
     command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=limit, check=False)

@@ -133,11 +133,11 @@ def interrupted(folder: Path, out: Path, workers: int, enough: int) -> tuple[int
     command = [sys.executable, "-m", "orchestrator.cli", "diagnose", "apollo11_zupp", "--measured", folder, "--out", out]
     command += ["--verdict-only", "--workers", workers]
     process = subprocess.Popen([str(c) for c in command], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True)
-    deadline = time.monotonic() + 300.0
+    deadline = time.monotonic() + 1800.0
     while len(keys(out)) < enough and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=60.0)
+    _, said = process.communicate(timeout=600.0)
     return process.returncode, said
 
 
