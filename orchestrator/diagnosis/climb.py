@@ -26,7 +26,8 @@ Run = Callable[[str, Sequence[Task[Any]]], list[Any]]
 FIRST = 8  # fits to the first horizon, at most
 AT_A_TIME, AGREE = 2, 2  # of them that are begun together; so many in one minimum that explains the data are enough
 ABREAST = 2  # of different minima that go on from each horizon
-DRAWS = (20, 1)  # of the posterior of each that goes on, and how many of them are fitted
+DRAWS = (20, 1)  # of the posterior of each that does not go on as noise lets, and how many of them are fitted
+NOTICED = 1.0  # standard deviations by which what a horizon adds may exceed noise before other ways on are looked for
 BEHIND = 25.0  # of φ: who is further behind the best of a horizon does not go on
 SAME = 2.0  # posterior standard deviations: fits nearer to each other have one minimum
 
@@ -50,18 +51,42 @@ def climbed(
 ) -> list[Path]:
     """Climbs of all horizons, the best first, ABREAST at most; empty where none of the starts can be flown.
 
-    From where the best leaves more than noise it goes on alone: no minimum of these coordinates will do.
+    From where the best leaves more than noise it goes on alone: no minimum of these coordinates will do. A climb goes on from its fit;
+    where a horizon then adds more than noise, from the best of draws beside, and so from there on until one adds no more.
     """
     chosen = tuple(nuisances)
     paths = _begun([Start(landings, chosen, z, horizons[0]) for z in starts[:FIRST]], counted(landings, horizons[0]), run)
+    lets = True
     for horizon in horizons[1:]:
         paths = paths if not paths or explains(paths[0][-1].fit.chi2, counted(landings, paths[0][-1].point.horizon)) else paths[:1]
-        drawn = run("base fit", [Draw(landings, path[-1].fit, horizon, *DRAWS) for path in paths])
-        pairs = [(path, point) for path, points in zip(paths, drawn, strict=True) for point in points]
-        ends = run("base fit", [Climb(landings, chosen, point) for _, point in pairs])
-        higher = [(*path, Rung(point, fit)) for (path, point), fit in zip(pairs, ends, strict=True) if fit is not None]
+        higher: list[Path] = []
+        if lets:
+            higher = _onward(landings, chosen, paths, [Draw(landings, path[-1].fit, horizon, 0, 1) for path in paths], run)
+            lets = any(_as_noise_lets(landings, *path[-2:]) for path in higher)
+        if not lets:
+            known = {id(path[-2]): path[-1].point.slopes for path in higher}
+            draws = [Draw(landings, path[-1].fit, horizon, *DRAWS, known.get(id(path[-1]))) for path in paths]
+            drawn = _onward(landings, chosen, paths, draws, run)
+            lets = any(_as_noise_lets(landings, *path[-2:]) for path in drawn)
+            higher += drawn
         paths = distinct(higher)[:ABREAST]
     return paths
+
+
+def _onward(landings: Landings, nuisances: tuple[Coordinate, ...], paths: Sequence[Path], draws: Sequence[Draw], run: Run) -> list[Path]:
+    """The paths, each taken to its draw's horizon from the points that the draw finds there."""
+    pairs = [(path, point) for path, points in zip(paths, run("base fit", draws), strict=True) for point in points]
+    ends = run("base fit", [Climb(landings, nuisances, point) for _, point in pairs])
+    return [(*path, Rung(point, fit)) for (path, point), fit in zip(pairs, ends, strict=True) if fit is not None]
+
+
+def _as_noise_lets(landings: Landings, below: Rung, above: Rung) -> bool:
+    """Whether a rung leaves no more of what its horizon adds than the one below lets expect: 2 φ at the optimum is chi-square with as many
+    degrees of freedom as there are readings, less where their noise is smaller than stated."""
+    count = counted(landings, below.point.horizon)
+    added = counted(landings, above.point.horizon) - count
+    level = min(1.0, 2.0 * below.fit.objective / count)
+    return 2.0 * (above.fit.objective - below.fit.objective) <= level * (added + NOTICED * float(np.sqrt(2.0 * added)))
 
 
 def _begun(starts: Sequence[Start], count: float, run: Run) -> list[Path]:

@@ -128,12 +128,13 @@ def fitted(
     """The model fitted from z with slopes made there or near; None where nothing there can be flown, or all hope is gone.
 
     renew     columns to make anew where the slopes prove poor, at most `renewals` times
+    predicted at z; flown beside what `beside` says, where that is given
     beside    where all is flown beside; the start, without
     ceiling   of φ: who after a first step is further above it than the slopes let hope for is given up
     """
-    z = clipped(model.coordinates, z)
+    z, alone = clipped(model.coordinates, z), beside is None
     beside = model.place(z) if beside is None else beside
-    predicted = model.predict(z, beside=beside) if predicted is None or model.lander.varies else predicted
+    predicted = model.predict(z, beside=beside) if predicted is None or (alone and model.lander.varies) else predicted
     if predicted is None:
         return None
     slopes, residual = slopes.copy(), model.residual(predicted)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,8 @@ Told = Callable[[str, str, float], None]
 """Called with the stage, the best hypothesis so far, and the share of the stage done."""
 HORIZONS = (0.3, 0.4, 0.5, 0.65, 0.85, 1.2)  # s since first contact, before the whole
 DRAWS = 100  # of the nuisances from their priors, flown to the first horizon
+ROUGH = 10.0  # times the twin's tolerance, for these: threefold noise is far above what its steps then leave to chance
+STEPPED = "tolerance"  # of the twin's variables; a master has none of this name
 LEAST = 0.5  # of φ: what the integrator leaves to chance
 FEW = 12  # samples that a horizon must add to be worth a fit
 MARGIN = 15.0  # in ln evidence: who is further behind the best is not refined
@@ -94,7 +97,9 @@ class Search:
         soft = np.isin(np.arange(len(self.nuisances)), self.fresh)
         drawn = [folded(self.nuisances, np.where(soft, random.standard_normal(len(soft)), 0.0)) for _ in range(DRAWS)]
         draws = [np.zeros(len(soft)), *drawn]
-        tasks = [Timed(self.landings, self.nuisances, tuple(draws[i : i + 10]), self.horizons[0]) for i in range(0, len(draws), 10)]
+        bases = [base | {name: ROUGH * x for name, x in base.items() if name == STEPPED} for base in self.landings.bases]
+        roughly = replace(self.landings, bases=bases)
+        tasks = [Timed(roughly, self.nuisances, tuple(draws[i : i + 10]), self.horizons[0]) for i in range(0, len(draws), 10)]
         timed = [one for some in self.run("draws", tasks) for one in some if one is not None]
         if not timed:
             raise UnflyableError

@@ -80,7 +80,7 @@ class Start:
     def __call__(self, lander: Lander) -> tuple[Point, Fit] | None:
         """Where the fit began, with the slopes there, and how it ended."""
         model = Model(self.landings, self.nuisances, lander, self.horizon)
-        predicted = model.predict(self.z)
+        predicted = model.own(self.z)
         if predicted is None:
             return None
         slopes = model.slopes(self.z, predicted)

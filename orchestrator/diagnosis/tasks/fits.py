@@ -62,7 +62,7 @@ class FitAt:
         mine = tuple(range(count, len(self.coordinates)))
         model = Model(self.landings, self.coordinates, lander, self.point.horizon)
         same = np.array_equal(self.z[:count], self.point.z) and not self.z[count:].any()
-        predicted = self.point.predicted if same else model.predict(self.z)
+        predicted = self.point.predicted if same else model.own(self.z)
         if predicted is None:
             return None
         slopes = np.column_stack([self.point.slopes, model.slopes(self.z, predicted, mine)])
