@@ -1,7 +1,7 @@
 """Measured landings with something hidden in them, made with the sealed cases' generator and flown otherwise than the search flies."""
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +15,13 @@ from sealed.instruments import clean_readings, noisy, public
 from sealed.kinds import Plan
 from sealed.make import FINE, scenes_of
 from sealed.outside import LAWS
+from sealed.scene import Scene
 from sealed.vehicle import Vehicle
 
 from orchestrator.diagnosis.measured import write_measured
+
+FRAMES = np.arange(-0.1, 3.0, 0.02)
+"""s since first contact: one recorder takes all channels at once, and landings have half as many instants to meet as with two clocks."""
 
 
 @dataclass(frozen=True)
@@ -31,10 +35,16 @@ class Case:
     names: tuple[str, ...] = ()
 
 
+def framed(scene: Scene) -> Scene:
+    """The scene as a recorder with common frames sees it."""
+    times = dict.fromkeys(scene.sampling.times, np.round(scene.sampling.origin + FRAMES, 6))
+    return replace(scene, sampling=replace(scene.sampling, times=times))
+
+
 def write(vehicle: Vehicle, case: Case, folder: Path) -> None:
     """Two landings of one vehicle with the case's effect at the same strength in both, white noise of the stated size."""
     plan = Plan(0, "single large" if case.effect else "null white", case.energy, 0.0, 1.0, "twin")
-    scenes = scenes_of(vehicle, plan, [case.seed])
+    scenes = [framed(scene) for scene in scenes_of(vehicle, plan, [case.seed])]
     random = np.random.default_rng([case.seed, 1])
     hidden = Hidden((), (), (), 0.0)
     if case.effect:

@@ -18,7 +18,7 @@ CASES = {  # the dearest first
     "a law outside the library": Case("outside_yaw_angle", 300.0, 14, "none_of_my_effects"),
     "one of two that look alike": Case("clock_offset", 30.0, 18, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
     "the other of the two, where noise misleads": Case("telemetry_lowpass", 30.0, 15, "cannot_tell", ("telemetry_lowpass", "clock_offset")),
-    "a force in the soil": Case("soil_damping", 150.0, 11, "effect", ("soil_damping",)),
+    "a force in the soil": Case("soil_damping", 400.0, 11, "effect", ("soil_damping",)),
     "a sensor's axes": Case("gyro_cross_axis", 150.0, 12, "effect", ("gyro_cross_axis",)),
     "nothing": Case("", 0.0, 13, "nothing_missing"),
 }
@@ -44,7 +44,7 @@ def diagnoses(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
 def diagnosed(folder: Path) -> Diagnosis:
     done = orchestrator(
         "diagnose", "apollo11_zupp", "--measured", folder / "fit", "--holdout", folder / "holdout", "--out", folder / "out",
-        "--verdict-only", "--workers", 1, "--budget", BUDGET, limit=3600.0,
+        "--verdict-only", "--workers", 1, "--budget", BUDGET, limit=7200.0,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return dict(json.loads((folder / "out" / "diagnosis.json").read_text("utf-8")))
@@ -54,12 +54,17 @@ MISSED = {
     "the other of the two, where noise misleads": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.98:"
     " χ² 859.5 of 920 against 871.2, 4.0 ahead in ln evidence; without noise the filter is 3 better in φ: no twin by its clean data",
 }
-"""Cases that a search is known to get wrong, with what it said; not in CI, ten minutes of a core each."""
+"""Cases that a search was seen to get wrong, with what it said; not in CI, ten minutes of a core each."""
+
+
+DEAR = ("a law outside the library", "one of two that look alike")
+"""Half of the demonstration's time: not in CI, which has to end on a machine of a third of the usual speed as well."""
 
 
 def cases() -> list[Any]:
-    known = {what: [pytest.mark.long, pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
-    return [pytest.param(what, marks=known.get(what, [])) for what in CASES]
+    marks: dict[str, list[Any]] = {what: [pytest.mark.long, pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
+    marks |= {what: [pytest.mark.long] for what in DEAR}
+    return [pytest.param(what, marks=marks.get(what, [])) for what in CASES]
 
 
 @pytest.mark.parametrize("what", cases())

@@ -21,8 +21,11 @@ SETTINGS = tuple(f"lander.soil.law[{i}]=2" for i in (1, 2, 3, 4))
 
 @pytest.mark.parametrize(
     ("scenario", "other", "light"),
-    [("apollo11_zupp_twin", ZUPP, False), ("apollo11_adams_twin", ADAMS, False), ("apollo11_zupp_twin", ZUPP, True)],
-    ids=["Zupp-like", "Adams-like", "Zupp-like, secondaries without mass"],
+    [
+        pytest.param("apollo11_zupp_twin", ZUPP, False, id="Zupp-like"),
+        pytest.param("apollo11_adams_twin", ADAMS, False, id="Adams-like", marks=pytest.mark.long),
+        pytest.param("apollo11_zupp_twin", ZUPP, True, id="Zupp-like, secondaries without mass", marks=pytest.mark.long),
+    ],
 )
 def test_the_twin_lands_as_mujoco_does(landing: Callable[..., Run], scenario: str, other: Landing, light: bool) -> None:
     """Verifies: the vehicle's and the legs' equations of motion, frames and signs, the struts' and the soil's laws in them.
