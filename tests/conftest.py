@@ -1,13 +1,36 @@
-"""With `pytest --unit-under-test my_leg.fmu` only the component tests of tests/fmu/units are of interest."""
+"""With `pytest --unit-under-test my_leg.fmu` only the component tests of tests/fmu/units are run; with `--within`, what begins in time."""
 
 from pathlib import Path
+from time import monotonic
 
 import pytest
 
 UNITS = Path(__file__).parent / "fmu" / "units"
+BEGUN = monotonic()
+SOONER = 0.75  # of the limit: by then tests marked slow are to begin
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--within",
+        type=float,
+        metavar="SECONDS",
+        help="tests that have not begun by then are skipped and named, those marked slow already by three quarters of it",
+    )
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     if config.getoption("--unit-under-test", None) and collection_path.is_file() and UNITS not in collection_path.parents:
         return True
     return None
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Before any fixture of the test is made."""
+    limit = item.config.getoption("--within")
+    if limit is None:
+        return
+    limit = SOONER * limit if item.get_closest_marker("slow") else limit
+    if monotonic() - BEGUN > limit:
+        pytest.skip(f"not begun within {limit:g} s; run it by itself")
