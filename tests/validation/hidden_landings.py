@@ -33,6 +33,8 @@ class Case:
     seed: int
     verdict: str
     names: tuple[str, ...] = ()
+    one_recorder: bool = True
+    """Without, each series has instants of its own, as in the sealed cases."""
 
 
 def framed(scene: Scene) -> Scene:
@@ -44,7 +46,7 @@ def framed(scene: Scene) -> Scene:
 def write(vehicle: Vehicle, case: Case, folder: Path) -> None:
     """Two landings of one vehicle with the case's effect at the same strength in both, white noise of the stated size."""
     plan = Plan(0, "single large" if case.effect else "null white", case.energy, 0.0, 1.0, "twin")
-    scenes = [framed(scene) for scene in scenes_of(vehicle, plan, [case.seed])]
+    scenes = [framed(scene) if case.one_recorder else scene for scene in scenes_of(vehicle, plan, [case.seed])]
     random = np.random.default_rng([case.seed, 1])
     hidden = Hidden((), (), (), 0.0)
     if case.effect:
