@@ -149,3 +149,20 @@ def test_the_scenario_a_run_leaves_behind_repeats_it_to_the_bit(tmp_path: Path) 
     again = orchestrator("run", tmp_path / "one" / "scenario.toml", "--out", tmp_path / "two", cwd=tmp_path)
     assert (first.returncode, again.returncode) == (0, 0), again.stderr
     assert (tmp_path / "one" / "history.csv").read_bytes() == (tmp_path / "two" / "history.csv").read_bytes()
+
+
+def test_ctrl_c_before_anything_is_computed_is_said() -> None:
+    """typer 0.29 ends without a word."""
+    program = """
+import sys
+from orchestrator import cli
+
+def interrupted():
+    raise KeyboardInterrupt
+
+cli.scenario_folder = interrupted
+sys.argv = ["orchestrator", "list"]
+cli.main()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=900)
+    assert (done.returncode, done.stderr) == (130, "interrupted: nothing was computed\n")

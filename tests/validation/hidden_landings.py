@@ -21,7 +21,7 @@ from sealed.vehicle import Vehicle
 from orchestrator.diagnosis.measured import write_measured
 
 FRAMES = np.arange(-0.1, 3.0, 0.02)
-"""s since first contact: one recorder takes all channels at once, and landings have half as many instants to meet as with two clocks."""
+"""s since first contact: one recorder takes all channels at once; a landing has 201 instants to meet, with clocks of 35 and 40 Hz 321."""
 
 
 @dataclass(frozen=True)

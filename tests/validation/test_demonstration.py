@@ -59,7 +59,7 @@ MISSED = {
 
 
 DEAR = ("a law outside the library", "one of two that look alike")
-"""Half of the demonstration's time: not in CI, which has to end on a machine of a third of the usual speed as well."""
+"""Half of the demonstration's time: not in CI, which has to end on a slow machine as well."""
 
 
 def cases() -> list[Any]:
