@@ -28,7 +28,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Before any fixture of the test is made."""
-    limit = item.config.getoption("--within")
+    limit = item.config.getoption("--within", None)
     if limit is None:
         return
     limit = SOONER * limit if item.get_closest_marker("slow") else limit
