@@ -61,7 +61,7 @@ def run(folder: Path, case: Case) -> str:
     if (folder / "summary.json").is_file():
         return ""
     scenario, arguments = case
-    command = [sys.executable, "-m", "orchestrator.cli", "run", f"scenarios/{scenario}.toml", "--quiet", "--out", str(folder), *arguments]
+    command = [sys.executable, "-m", "orchestrator", "run", f"scenarios/{scenario}.toml", "--quiet", "--out", str(folder), *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     return "" if done.returncode == 0 else f"{folder.name}: exit code {done.returncode}: {done.stderr.strip()}"
 

@@ -261,6 +261,3 @@ def _progress(title: str, start: float, stop: float, quiet: bool) -> Iterator[An
 
         yield on_step
 
-
-if __name__ == "__main__":
-    main()

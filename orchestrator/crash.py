@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 SIGNALS = (signal.SIGSEGV, signal.SIGABRT, signal.SIGFPE, signal.SIGILL)
-_PATIENCE = 20
-"""s after which a handler that is stuck is ended."""
+_PATIENCE = 120
+"""s after which a handler that is stuck is ended. Writing a result has taken more than 20 s where every import was compiled anew."""
 
 
 @contextmanager

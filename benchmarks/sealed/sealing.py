@@ -22,7 +22,7 @@ from typing import Any
 from sealed.commit import ROOT, commit
 
 WATCH = Path(__file__).resolve().parent / "watch"
-COMMAND = (sys.executable, "-m", "orchestrator.cli", "diagnose", "{scenario}", "--measured", "fit", "--holdout", "holdout",
+COMMAND = (sys.executable, "-m", "orchestrator", "diagnose", "{scenario}", "--measured", "fit", "--holdout", "holdout",
            "--out", "out", "--seed", "{seed}", "--workers", "1")  # fmt: skip
 KEPT = ("HOME", "LANG", "PATH", "SYSTEMROOT", "TMPDIR", "NUMBA_CACHE_DIR", "VIRTUAL_ENV")
 

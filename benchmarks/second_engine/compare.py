@@ -57,7 +57,7 @@ def flown(scenario: str, other: Landing, folder: Path) -> None:
     """The twin, law 2 of the soil."""
     settings = [f"lander.soil.law[{i}]=2" for i in (1, 2, 3, 4)] + [f"lander.secondary_strut_mass={other.secondary_mass}"]
     words = [word for it in settings for word in ("--set", it)]
-    command = [sys.executable, "-m", "orchestrator.cli", "run", scenario, "--out", str(folder), "--no-figures", *words]
+    command = [sys.executable, "-m", "orchestrator", "run", scenario, "--out", str(folder), "--no-figures", *words]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
 
 

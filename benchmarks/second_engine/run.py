@@ -58,7 +58,7 @@ def make(case: Hidden, folder: Path) -> None:
 
 
 def diagnose(folder: Path) -> dict[str, Any]:
-    command = [sys.executable, "-m", "orchestrator.cli", "diagnose", "apollo11_zupp", "--measured", folder / "fit",
+    command = [sys.executable, "-m", "orchestrator", "diagnose", "apollo11_zupp", "--measured", folder / "fit",
                "--holdout", folder / "holdout", "--out", folder / "out", "--workers", "1"]  # fmt: skip
     if not (folder / "out" / "diagnosis.json").is_file():
         subprocess.run([str(it) for it in command], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)

@@ -20,7 +20,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", ["Gnc2", "Gnc3", "Soil2"])
 def test_a_unit_in_c_keeps_its_contract(name: str, built: Path) -> None:
-    command = [sys.executable, "-m", "orchestrator.cli", "check", str(built / f"{name}.fmu")]
+    command = [sys.executable, "-m", "orchestrator", "check", str(built / f"{name}.fmu")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "held against the contract of" in done.stdout

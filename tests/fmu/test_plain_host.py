@@ -64,7 +64,7 @@ def test_a_c_host_gets_the_bits_that_fmpy_gets(
 def test_the_command_prints_the_environment_and_starts_a_host_with_it(
     plain_host: Path, fmus: dict[str, Path], unpacked: Callable[[Path], Path]
 ) -> None:
-    ours = [sys.executable, "-m", "orchestrator.cli", "host-env"]
+    ours = [sys.executable, "-m", "orchestrator", "host-env"]
     printed = subprocess.run(ours, capture_output=True, text=True, check=True).stdout.splitlines()
     assert dict(line.split("=", 1) for line in printed) == host_environment()
     start, output = CASES["RateSensor"]
@@ -83,7 +83,7 @@ def test_without_it_the_host_is_told_what_is_missing(plain_host: Path, fmus: dic
 
 
 def test_a_program_that_is_not_there_is_told_in_one_line() -> None:
-    ours = [sys.executable, "-m", "orchestrator.cli", "host-env", "./no_such_host"]
+    ours = [sys.executable, "-m", "orchestrator", "host-env", "./no_such_host"]
     done = subprocess.run(ours, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert "host-env ./no_such_host: cannot be started" in done.stderr

@@ -24,7 +24,7 @@ def test_the_contracts_kept_are_those_of_the_built_fmus(fmus: dict[str, Path]) -
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_fmu_of_ours_keeps_its_contract(name: str, fmus: dict[str, Path]) -> None:
-    command = [sys.executable, "-m", "orchestrator.cli", "check", str(fmus[name])]
+    command = [sys.executable, "-m", "orchestrator", "check", str(fmus[name])]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert " 0 warnings, 0 failed" in done.stdout

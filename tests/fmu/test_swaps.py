@@ -186,7 +186,7 @@ def test_a_unit_that_does_not_fit_is_one_line_that_names_unit_and_variable(run: 
     overlay = tmp_path / "swap.toml"
     base = (ROOT / "scenarios" / "apollo11_zupp.toml").as_posix()
     overlay.write_text(f'extends = "{base}"\n[units.guidance]\nfmu = "{fmu.as_posix()}"\n')
-    command = [sys.executable, "-m", "orchestrator.cli", "run", str(overlay), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "orchestrator", "run", str(overlay), "--out", str(tmp_path / "out")]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=900, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"error: swap.toml: {message}")

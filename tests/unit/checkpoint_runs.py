@@ -13,7 +13,7 @@ WALL_TIME = ("wall_s", "share_outside_units", "unit_seconds_each")
 
 
 def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments), "--quiet"]
+    command = [sys.executable, "-m", "orchestrator", *map(str, arguments), "--quiet"]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=1800)
 
 
@@ -26,7 +26,7 @@ def run(scenario: object, out: Path, *arguments: object) -> Path:
 
 def stop_a_run(scenario: object, out: Path, number: int, how: signal.Signals, *arguments: object) -> int:
     """Start a run, send a signal as soon as it has written this checkpoint; its exit code."""
-    command = [sys.executable, "-m", "orchestrator.cli", "run", str(scenario), "--out", str(out), "--no-figures", *map(str, arguments)]
+    command = [sys.executable, "-m", "orchestrator", "run", str(scenario), "--out", str(out), "--no-figures", *map(str, arguments)]
     process = subprocess.Popen(command, cwd=out.parent, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ})
     while not checkpoint(out, number).exists():
         assert process.poll() is None, "ended before its checkpoint"

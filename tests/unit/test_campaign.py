@@ -29,7 +29,7 @@ uniform = [50.0, 200.0]
 
 
 def command(*arguments: object) -> list[str]:
-    return [sys.executable, "-m", "orchestrator.cli", "campaign", *map(str, arguments), "--workers", "2"]
+    return [sys.executable, "-m", "orchestrator", "campaign", *map(str, arguments), "--workers", "2"]
 
 
 def campaign(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -86,7 +86,7 @@ def test_a_landing_flown_alone_is_its_row_to_the_last_bit(begun: Path) -> None:
     row = pq.read_table(begun / "uninterrupted" / "landings.parquet").to_pylist()[17]
     alone = ["run", begun / "uninterrupted" / "scenario.toml", "--out", begun / "alone", "--quiet",
              "--set", f"a.mass={row['a.mass']!r}", "--set", f"spring.stiffness={row['stiffness']!r}"]  # fmt: skip
-    subprocess.run([sys.executable, "-m", "orchestrator.cli", *map(str, alone)], check=True, timeout=900)
+    subprocess.run([sys.executable, "-m", "orchestrator", *map(str, alone)], check=True, timeout=900)
     columns = json.loads((begun / "alone" / "summary.json").read_text())["columns"]
     assert columns["a.position"]["final"] == row["columns.a.position.final"]
 

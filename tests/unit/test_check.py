@@ -31,7 +31,7 @@ FAULTS = {
 def ran(fmu: Path, folder: Path, *options: str) -> tuple[int, str, list[dict[str, str]]]:
     """Exit code, standard error, findings."""
     report = folder / "report.json"
-    command = [sys.executable, "-m", "orchestrator.cli", "check", str(fmu), "--json", str(report), "--timeout", "5", *options]
+    command = [sys.executable, "-m", "orchestrator", "check", str(fmu), "--json", str(report), "--timeout", "5", *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False)
     findings = json.loads(report.read_text())["findings"] if report.exists() else []
     return done.returncode, done.stderr, findings

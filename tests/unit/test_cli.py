@@ -13,7 +13,7 @@ from fmi_samples import oscillator, sample_fmus
 
 
 def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "orchestrator", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=900)
 
 
@@ -129,7 +129,7 @@ def test_a_run_that_misses_its_tolerance_is_not_trusted_and_returns_three(tmp_pa
 def test_ctrl_c_keeps_everything_computed_marked_incomplete(tmp_path: Path) -> None:
     """Where the signal comes before the run has begun, on a slow machine, it is sent later."""
     path = oscillator(tmp_path, **{"stop_time = 0.5": "stop_time = 1000.0"})
-    command = [sys.executable, "-m", "orchestrator.cli", "run", str(path), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "orchestrator", "run", str(path), "--out", str(tmp_path / "out")]
     for wait in (4.0, 15.0, 60.0):
         process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tmp_path, env={**os.environ})
         time.sleep(wait)
@@ -163,6 +163,26 @@ def interrupted():
 cli.scenario_folder = interrupted
 sys.argv = ["orchestrator", "list"]
 cli.main()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=900)
+    assert (done.returncode, done.stderr) == (130, "interrupted: nothing was computed\n")
+
+
+def test_ctrl_c_while_the_commands_are_imported_is_said() -> None:
+    """On a slow machine they take seconds, and a signal in a module's own code would be a traceback."""
+    program = """
+import os, signal, sys
+
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == "rich.table":
+            os.kill(os.getpid(), signal.SIGINT)
+        return None
+
+sys.meta_path.insert(0, Interrupting())
+from orchestrator.__main__ import main
+sys.argv = ["orchestrator", "list"]
+main()
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=900)
     assert (done.returncode, done.stderr) == (130, "interrupted: nothing was computed\n")

@@ -61,7 +61,7 @@ def test_a_failure_is_named_and_what_was_computed_stays(tmp_path: Path, paramete
     assert 0.45 < result.times[-1] < 0.55
 
 
-RUN = ("-m", "orchestrator.cli", "run", "--quiet", "--no-figures")
+RUN = ("-m", "orchestrator", "run", "--quiet", "--no-figures")
 
 
 def test_a_unit_that_hangs_ends_the_run_with_its_name_and_the_results_so_far(tmp_path: Path) -> None:

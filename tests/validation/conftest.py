@@ -33,7 +33,7 @@ class Landing:
 
 def orchestrator(*arguments: object, limit: float = 3600.0) -> Completed:
     """The command line in the project's folder; limit: s of wall time."""
-    command = [sys.executable, "-m", "orchestrator.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "orchestrator", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=limit, check=False)
 
 

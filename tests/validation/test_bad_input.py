@@ -86,7 +86,7 @@ def test_a_pad_that_starts_deep_in_the_soil_is_refused(tmp_path: Path) -> None:
 
 def interrupted(out: Path, wait: float) -> tuple[int, str]:
     """Exit code and stderr of a long landing that gets a SIGINT after `wait` seconds."""
-    command = [sys.executable, "-m", "orchestrator.cli", "run", ZUPP, "--stop-time", "100", "--out", str(out)]
+    command = [sys.executable, "-m", "orchestrator", "run", ZUPP, "--stop-time", "100", "--out", str(out)]
     process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(wait)
     process.send_signal(signal.SIGINT)

@@ -130,7 +130,7 @@ def keys(out: Path) -> set[str]:
 
 def interrupted(folder: Path, out: Path, workers: int, enough: int) -> tuple[int, str]:
     """Exit code and stderr of a diagnosis that hears Ctrl-C, as its processes do, once the store holds enough."""
-    command = [sys.executable, "-m", "orchestrator.cli", "diagnose", "apollo11_zupp", "--measured", folder, "--out", out]
+    command = [sys.executable, "-m", "orchestrator", "diagnose", "apollo11_zupp", "--measured", folder, "--out", out]
     command += ["--verdict-only", "--workers", workers]
     process = subprocess.Popen([str(c) for c in command], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True)
     deadline = time.monotonic() + 1800.0

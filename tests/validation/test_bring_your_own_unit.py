@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "bring-your-own-unit.md"
 PROGRAMS = {
     "python": [sys.executable],
-    "orchestrator": [sys.executable, "-m", "orchestrator.cli"],
+    "orchestrator": [sys.executable, "-m", "orchestrator"],
     "pytest": [sys.executable, "-m", "pytest", "-p", "orchestrator.check.pytest_plugin"],
 }
 TEMPLATE = ROOT / "examples" / "template_unit"
