@@ -8,6 +8,8 @@ import pytest
 UNITS = Path(__file__).parent / "fmu" / "units"
 BEGUN = monotonic()
 SOONER = 0.75  # of the limit: by then tests marked slow are to begin
+TOGETHER = 0.5  # and by then the first of a file whose tests, marked together, all begin with it
+FIRST: dict[Path, float] = {}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -31,6 +33,10 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     limit = item.config.getoption("--within", None)
     if limit is None:
         return
-    limit = SOONER * limit if item.get_closest_marker("slow") else limit
-    if monotonic() - BEGUN > limit:
+    ago = monotonic() - BEGUN
+    if item.get_closest_marker("together"):
+        ago, limit = FIRST.setdefault(item.path, ago), TOGETHER * limit
+    elif item.get_closest_marker("slow"):
+        limit = SOONER * limit
+    if ago > limit:
         pytest.skip(f"not begun within {limit:g} s; run it by itself")

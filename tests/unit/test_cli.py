@@ -179,6 +179,7 @@ class Interrupting:
             os.kill(os.getpid(), signal.SIGINT)
         return None
 
+signal.signal(signal.SIGINT, signal.default_int_handler)   # the tests may run as a job in the background, which ignores it
 sys.meta_path.insert(0, Interrupting())
 from orchestrator.__main__ import main
 sys.argv = ["orchestrator", "list"]
