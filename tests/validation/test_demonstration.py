@@ -11,7 +11,7 @@ import pytest
 from conftest import orchestrator
 from hidden_landings import Case, Vehicle, write
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.together]
 
 
 TWINS = ("telemetry_lowpass", "clock_offset")
@@ -52,19 +52,16 @@ def diagnosed(folder: Path) -> Diagnosis:
 
 
 MISSED = {
+    "a law outside the library": "said friction under -Z and under +Y with more than 99.9 %, 119.7 in ln evidence; the law stands at 115.8,"
+    " as from the truth (φ 476.1; the pair 465.6): 4.6 to 1 by the priors, which no sentence tells",
     "the other of the two, where noise misleads": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.98:"
     " χ² 859.5 of 920 against 871.2, 4.0 ahead in ln evidence; without noise the filter is 3 better in φ: no twin by its clean data",
 }
 """Cases that a search was seen to get wrong, with what it said; not in CI, ten minutes of a core each."""
 
 
-DEAR = ("a law outside the library", "one of two that look alike")
-"""Half of the demonstration's time: not in CI, which has to end on a slow machine as well."""
-
-
 def cases() -> list[Any]:
-    marks: dict[str, list[Any]] = {what: [pytest.mark.long, pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
-    marks |= {what: [pytest.mark.long] for what in DEAR}
+    marks = {what: [pytest.mark.long, pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
     return [pytest.param(what, marks=marks.get(what, [])) for what in CASES]
 
 
