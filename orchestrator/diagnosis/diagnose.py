@@ -28,7 +28,7 @@ from orchestrator.diagnosis.signatures import measures_between, not_excited
 from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, try_pairs
 from orchestrator.diagnosis.terms.find_term import adopt, find_term, forsake
 from orchestrator.diagnosis.terms.found import Found, to_outcome
-from orchestrator.diagnosis.verdict import Judged, Judgement, overtaken
+from orchestrator.diagnosis.verdict import SURE, Judged, Judgement, outside_share
 from orchestrator.errors import UserError
 from orchestrator.scenario.locate import scenario_folder
 
@@ -191,7 +191,11 @@ def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, 
     forsake(state, found)
     verdicts, judgement = judged(state, {})
     best = max((one for one in verdicts if one.name in names), key=lambda one: judgement.probabilities[one.name])
-    if not overtaken(best, len(setup.hypotheses), found.log_evidence, len(found.regressed)):
+    share = outside_share(best, len(setup.hypotheses), found.log_evidence, len(found.regressed))
+    if share <= 0.5:
+        if share > 1.0 - SURE:
+            said = f"{found.words}, which is not in the library, has {share:.0%} of the probability beside {best.name}"
+            diagnosis.outcome.warnings.append(f"{said}: be no surer of that name")
         return False
     return _put_forward(request, diagnosis, crew, found, told)
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from math import log
 
 import numpy as np
+from scipy.special import expit
 
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import Verdict
@@ -56,9 +57,10 @@ def prior_of(name: str, singles: int) -> float:
     return 0.5 if parts == 0 else 0.5 * (1.0 - TOGETHER) / max(singles, 1) if parts == 1 else 0.5 * TOGETHER / pairs
 
 
-def overtaken(best: Judged, singles: int, log_evidence: float, terms: int) -> bool:
-    """Whether a law outside the library, one of so many, is more probable than the best of the library. Evidence over nothing missing."""
-    return log_evidence + log(0.5 * OUTSIDE / max(terms, 1)) > best.log_evidence + log(prior_of(best.name, singles))
+def outside_share(best: Judged, singles: int, log_evidence: float, terms: int) -> float:
+    """Probability of a law outside the library, one of so many, against the best of the library. Evidence over nothing missing."""
+    ahead = log_evidence + log(0.5 * OUTSIDE / max(terms, 1)) - best.log_evidence - log(prior_of(best.name, singles))
+    return float(expit(ahead))
 
 
 def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrator.diagnosis.hypothesis import NULL
-from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, judge, overtaken, probabilities
+from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, judge, outside_share, probabilities
 
 LIBRARY = 40
 FINE, POOR = 0.4, 1e-6
@@ -98,8 +98,9 @@ def test_a_law_outside_the_library_must_lead_a_single_by_what_its_prior_asks_and
     single, pair = Judged("damping", 20.0, 0.5), Judged("damping + slope", 20.0, 0.5)
     asked = np.log((1.0 - TOGETHER) / 47 * 100 / OUTSIDE)
     assert asked == pytest.approx(3.70, abs=0.01)
-    assert not overtaken(single, 47, 20.0 + asked - 0.01, 100)
-    assert overtaken(single, 47, 20.0 + asked + 0.01, 100)
+    assert outside_share(single, 47, 20.0 + asked, 100) == pytest.approx(0.5)
     behind = np.log(47 * 46 / 2 / 100)  # 1081 pairs and 100 laws share as much
-    assert overtaken(pair, 47, 20.0 - behind + 0.01, 100)
-    assert not overtaken(pair, 47, 20.0 - behind - 0.01, 100)
+    assert outside_share(pair, 47, 20.0 - behind, 100) == pytest.approx(0.5)
+    assert outside_share(pair, 47, 20.0 - behind - np.log(9.0), 100) == pytest.approx(0.1)
+    assert outside_share(pair, 47, 1020.0, 100) == 1.0
+    assert outside_share(pair, 47, -1020.0, 100) == 0.0
