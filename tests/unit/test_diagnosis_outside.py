@@ -29,25 +29,26 @@ def judged(state: Any, holdouts: Any) -> tuple[list[Judged], Any]:
 
 
 @pytest.mark.parametrize(
-    ("named", "term", "adequate", "gain", "overtaken"),
+    ("named", "term", "adequate", "gain", "overtaken", "share"),
     [
-        ("damping", 22.0, True, 5.0, False),  # 2 ahead: a single effect has the better prior
-        ("damping", 24.0, True, 5.0, True),
-        ("damping", 24.0, False, 5.0, False),  # leaves more than noise
-        ("damping", 24.0, True, -1.0, False),  # worse on the held-out landing
-        ("damping + slope", 18.0, True, 5.0, True),  # 2 behind a pair
-        ("damping + slope", 17.0, True, 5.0, False),
-        ("damping", None, True, 5.0, False),
+        ("damping", 21.0, True, 5.0, False, ""),  # a sixteenth
+        ("damping", 22.0, True, 5.0, False, "15%"),  # 2 ahead: a single effect has the better prior
+        ("damping", 24.0, True, 5.0, True, ""),
+        ("damping", 24.0, False, 5.0, False, ""),  # leaves more than noise
+        ("damping", 24.0, True, -1.0, False, ""),  # worse on the held-out landing
+        ("damping + slope", 18.0, True, 5.0, True, ""),  # 2 behind a pair
+        ("damping + slope", 17.0, True, 5.0, False, "35%"),
+        ("damping", None, True, 5.0, False, ""),
     ],
 )
 def test_the_more_probable_of_both_is_said(
-    monkeypatch: Any, named: str, term: float | None, adequate: bool, gain: float, overtaken: bool
+    monkeypatch: Any, named: str, term: float | None, adequate: bool, gain: float, overtaken: bool, share: str
 ) -> None:
     state = state_of({NULL.name: 0.0, named: 20.0})
     fit = SimpleNamespace(log_evidence=term, chi2=100.0)
     tried = dict.fromkeys(range(100))
     found = SimpleNamespace(name=TERM.name, fit=fit, hypothesis=TERM, adequate=adequate, log_evidence=term, regressed=tried)
-    found.second = None
+    found.second, found.words = None, "a torque"
     monkeypatch.setattr(diagnose, "find_term", lambda *_: found if term is not None else None)
     monkeypatch.setattr(diagnose, "judged", judged)
     monkeypatch.setattr(diagnose, "to_outcome", lambda found, closure: {"words": found.name, "closure": closure})
@@ -63,6 +64,7 @@ def test_the_more_probable_of_both_is_said(
     assert (diagnosis.found is found) == overtaken
     assert (TERM.name in state.fits) == overtaken
     assert sorted(len(parts_of(h.name)) for h in state.hypotheses) == sorted([len(parts_of(named)), *([1] if overtaken else [])])
+    assert [share in warning for warning in diagnosis.outcome.warnings] == ([True] if share else [])
     if overtaken:
         assert diagnosis.outcome.term == {"words": TERM.name, "closure": pytest.approx(0.95)}
 
