@@ -6,6 +6,8 @@ import os
 import signal
 from typing import Any
 
+from orchestrator.errors import EXIT_INTERRUPTED
+
 
 def main() -> None:
     """The command line; see orchestrator.cli."""
@@ -21,7 +23,7 @@ def main() -> None:
 def _nothing_yet(*_: Any) -> None:
     """As a KeyboardInterrupt it would be whatever the module that is being imported makes of it."""
     os.write(2, b"interrupted: nothing was computed\n")
-    os._exit(130)
+    os._exit(EXIT_INTERRUPTED)
 
 
 if __name__ == "__main__":

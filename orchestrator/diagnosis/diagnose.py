@@ -22,6 +22,7 @@ from orchestrator.diagnosis.measured import faults, read_measured
 from orchestrator.diagnosis.measured.landing import Measured
 from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
 from orchestrator.diagnosis.report import verdict_sentence as sentence
+from orchestrator.diagnosis.report.numbers import percent
 from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
@@ -177,6 +178,7 @@ def _asked(diagnosis: Diagnosis, crew: Crew, seed: int, names: Sequence[str], to
 def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequence[str], told: Told | None) -> bool:
     """Whether a law outside the library is more probable than the effects that would be named, and holds on the held-out landings.
 
+    Where it is not, but not improbable either, a warning tells its share.
     Two effects at once can imitate much: a torque with the yaw angle came out as a pulse of attitude control and friction under one pad.
     """
     setup, state = diagnosis.setup, diagnosis.state
@@ -194,7 +196,7 @@ def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, 
     share = outside_share(best, len(setup.hypotheses), found.log_evidence, len(found.regressed))
     if share <= 0.5:
         if share > 1.0 - SURE:
-            said = f"{found.words}, which is not in the library, has {share:.0%} of the probability beside {best.name}"
+            said = f"{found.words}, which is not in the library, has {percent(share)} of the probability beside {best.name}"
             diagnosis.outcome.warnings.append(f"{said}: be no surer of that name")
         return False
     return _put_forward(request, diagnosis, crew, found, told)

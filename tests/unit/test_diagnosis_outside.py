@@ -32,12 +32,12 @@ def judged(state: Any, holdouts: Any) -> tuple[list[Judged], Any]:
     ("named", "term", "adequate", "gain", "overtaken", "share"),
     [
         ("damping", 21.0, True, 5.0, False, ""),  # a sixteenth
-        ("damping", 22.0, True, 5.0, False, "15%"),  # 2 ahead: a single effect has the better prior
+        ("damping", 22.0, True, 5.0, False, "15 %"),  # 2 ahead: a single effect has the better prior
         ("damping", 24.0, True, 5.0, True, ""),
         ("damping", 24.0, False, 5.0, False, ""),  # leaves more than noise
         ("damping", 24.0, True, -1.0, False, ""),  # worse on the held-out landing
         ("damping + slope", 18.0, True, 5.0, True, ""),  # 2 behind a pair
-        ("damping + slope", 17.0, True, 5.0, False, "35%"),
+        ("damping + slope", 17.0, True, 5.0, False, "35 %"),
         ("damping", None, True, 5.0, False, ""),
     ],
 )

@@ -23,16 +23,31 @@ def test_beside(place): pass
 """
 
 
-@pytest.mark.parametrize(("ago", "passed", "skipped"), [(400, 4, 0), (650, 2, 2), (850, 1, 3), (1100, 0, 4)])
-def test_what_has_not_begun_in_time_is_skipped_and_named(tmp_path: Path, ago: int, passed: int, skipped: int) -> None:
-    """Of a session that began so many s ago and may begin tests within 1000 s."""
+TOGETHER = """
+import conftest, pytest
+
+pytestmark = pytest.mark.together
+
+def test_one(): conftest.BEGUN -= 2000
+
+def test_two(): pass
+"""
+
+
+def said_of(tests: str, folder: Path, ago: int = 0) -> str:
+    """What a session says that began so many s ago and may begin tests within 1000 s."""
     plugin = (ROOT / "tests" / "conftest.py").read_text("utf-8")
     assert "BEGUN = monotonic()\n" in plugin
-    (tmp_path / "conftest.py").write_text(plugin.replace("BEGUN = monotonic()\n", f"BEGUN = monotonic() - {ago}\n"), "utf-8")
-    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers =\n  slow\n  together\n", "utf-8")
-    (tmp_path / "test_it.py").write_text(TESTS, "utf-8")
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-ra", "--within", "1000", str(tmp_path)]
-    said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=900, check=True).stdout
+    (folder / "conftest.py").write_text(plugin.replace("BEGUN = monotonic()\n", f"BEGUN = monotonic() - {ago}\n"), "utf-8")
+    (folder / "pytest.ini").write_text("[pytest]\nmarkers =\n  slow\n  together\n", "utf-8")
+    (folder / "test_it.py").write_text(tests, "utf-8")
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-ra", "--within", "1000", str(folder)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=900, check=True).stdout
+
+
+@pytest.mark.parametrize(("ago", "passed", "skipped"), [(400, 4, 0), (650, 2, 2), (850, 1, 3), (1100, 0, 4)])
+def test_what_has_not_begun_in_time_is_skipped_and_named(tmp_path: Path, ago: int, passed: int, skipped: int) -> None:
+    said = said_of(TESTS, tmp_path, ago)
     counts = {word: int(n) for n, word in re.findall(r"(\d+) (passed|skipped)", said)}
     assert (counts.get("passed", 0), counts.get("skipped", 0)) == (passed, skipped)
     assert ("not begun within 750 s" in said) == (ago > 750)
@@ -41,11 +56,4 @@ def test_what_has_not_begun_in_time_is_skipped_and_named(tmp_path: Path, ago: in
 
 def test_what_began_together_is_not_left_out_half_way(tmp_path: Path) -> None:
     """The second test's setup comes too late, but its work began with the first's."""
-    plugin = (ROOT / "tests" / "conftest.py").read_text("utf-8")
-    (tmp_path / "conftest.py").write_text(plugin, "utf-8")
-    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = together\n", "utf-8")
-    body = "import conftest, pytest\npytestmark = pytest.mark.together\ndef test_one(): conftest.BEGUN -= 2000\ndef test_two(): pass\n"
-    (tmp_path / "test_it.py").write_text(body, "utf-8")
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-ra", "--within", "1000", str(tmp_path)]
-    said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=900, check=True).stdout
-    assert "2 passed" in said
+    assert "2 passed" in said_of(TOGETHER, tmp_path)
