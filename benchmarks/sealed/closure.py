@@ -64,7 +64,7 @@ def _revised(vehicle: Vehicle, diagnosis: Tree) -> list[tuple[Effect, Sequence[f
     found = [_at(vehicle, vehicle.effects[it["name"]], it["parameters"]) for it in named]
     term = diagnosis.get("term") or {}
     value = (term.get("coefficient") or {}).get("value")
-    if not found and term.get("fixed") and value:
+    if not found and diagnosis.get("verdict") == "none_of_my_effects" and term.get("fixed") and value:
         size = abs(float(value))
         exponents = {address.partition(".")[2]: value for address, value in term["fixed"].items()}
         found.append((law("term", size, "term", term["port"], "active", **exponents), [math.copysign(1.0, float(value))]))

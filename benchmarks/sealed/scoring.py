@@ -61,7 +61,7 @@ def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None
     outside = key["kind"] == "outside"
     stated = (said.get("gap") or {}).get("closure")
     return Score(
-        case, key["kind"], float(key["lambda"]), truth, str(said["verdict"]), named, _answer(said, truth, named),
+        case, key["kind"], float(key["lambda"]), truth, str(said["verdict"]), named, _answer(said, key, truth, named),
         min((float(it.get("probability") or 0.0) for it in effects), default=0.0) if said["verdict"] in ("effect", "effects") else 0.0,
         len(set(truth) & set(named)), _number(closure if closure is not None else stated), errors, pulls,
         right_port(said, key) if outside else None, right_form(said, key) if outside else None,
@@ -78,11 +78,14 @@ def _named(said: Tree) -> tuple[str, ...]:
     return ()
 
 
-def _answer(said: Tree, truth: Sequence[str], named: Sequence[str]) -> Answer:
+def _answer(said: Tree, key: Tree, truth: Sequence[str], named: Sequence[str]) -> Answer:
     verdict = said["verdict"]
     if verdict in ("effect", "effects"):
         return "right" if set(named) == set(truth) and truth else "wrong"
     if verdict == "cannot_tell":
+        law = (said.get("term") or {}).get("name")
+        if key["kind"] == "outside" and law in named:
+            return "set" if right_port(said, key) else "wrong set"
         return _answer_set(truth, named)
     simple: dict[str, Answer] = {"none_of_my_effects": "refused", "nothing_missing": "nothing"}
     return simple.get(str(verdict), "unjudged")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
 
@@ -22,14 +22,13 @@ from orchestrator.diagnosis.measured import faults, read_measured
 from orchestrator.diagnosis.measured.landing import Measured
 from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
 from orchestrator.diagnosis.report import verdict_sentence as sentence
-from orchestrator.diagnosis.report.numbers import percent
 from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
 from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, try_pairs
 from orchestrator.diagnosis.terms.find_term import adopt, find_term, forsake
 from orchestrator.diagnosis.terms.found import Found, to_outcome
-from orchestrator.diagnosis.verdict import SURE, Judged, Judgement, outside_share
+from orchestrator.diagnosis.verdict import Judged, Judgement
 from orchestrator.errors import UserError
 from orchestrator.scenario.locate import scenario_folder
 
@@ -139,16 +138,10 @@ def _searched(
     if crew.flown < request.budget:
         try_pairs(state)
     diagnosis = Diagnosis(outcome, setup, held, state, effects=effects)
-    names = promising(state, 3 if crew.flown < request.budget else 1)
+    names = promising(state) if crew.flown < request.budget else promising(state, 1)
     try:
-        if names and crew.flown < request.budget and _overtaken_from_outside(request, diagnosis, crew, names, told):
-            verdicts, judgement = judged(state, {})
-            outcome.term["instead_of"] = names[0]
-            why = f"{names[0]} would be named, but {outcome.term['words']}, which is not in the library, is more probable"
-            judgement = Judgement("none_of_my_effects", (), judgement.probabilities, why)
-        else:
-            gains = _asked(diagnosis, crew, request.seed, names, told)
-            verdicts, judgement = judged(state, gains)
+        law = _law_outside(request, diagnosis, crew, names, told) if names and crew.flown < request.budget else None
+        verdicts, judgement = _judged(request, diagnosis, crew, names, law, told)
     except UnflyableError:
         raise _unflyable(request, held or setup) from None
     diagnosis.judgement = judgement
@@ -175,31 +168,53 @@ def _asked(diagnosis: Diagnosis, crew: Crew, seed: int, names: Sequence[str], to
     return gains
 
 
-def _overtaken_from_outside(request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequence[str], told: Told | None) -> bool:
-    """Whether a law outside the library is more probable than the effects that would be named, and holds on the held-out landings.
+def _law_outside(request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequence[str], told: Told | None) -> Found | None:
+    """The law outside the library that comes nearest to the effects that would be named; its nuisances are offered to these.
 
-    Where it is not, but not improbable either, a warning tells its share.
-    Two effects at once can imitate much: a torque with the yaw angle came out as a pulse of attitude control and friction under one pad.
+    Two effects at once can imitate much: a torque with the yaw angle came out as friction under two pads.
     """
     setup, state = diagnosis.setup, diagnosis.state
     if setup is None or state is None:
-        return False
+        return None
     beat = max(state.fits[name].log_evidence for name in names) - state.fits[NULL.name].log_evidence
     found = find_term(state, setup, crew, request.seed, told, beat)
     if found is None or not found.adequate or found.second is not None:  # two laws at once have no such prior
-        return False
+        return None
     adopt(state, found)
     state.fits = state.search.back_substituted(state.fits, state.hypotheses, names[:2], found.name)
     forsake(state, found)
-    verdicts, judgement = judged(state, {})
-    best = max((one for one in verdicts if one.name in names), key=lambda one: judgement.probabilities[one.name])
-    share = outside_share(best, len(setup.hypotheses), found.log_evidence, len(found.regressed))
-    if share <= 0.5:
-        if share > 1.0 - SURE:
-            said = f"{found.words}, which is not in the library, has {percent(share)} of the probability beside {best.name}"
-            diagnosis.outcome.warnings.append(f"{said}: be no surer of that name")
-        return False
-    return _put_forward(request, diagnosis, crew, found, told)
+    return found
+
+
+def _judged(
+    request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequence[str], law: Found | None, told: Told | None
+) -> tuple[list[Judged], Judgement]:
+    """The verdict on what would be named and, where there is one, on a law outside the library beside it."""
+    state = diagnosis.state
+    if state is None:
+        raise ValueError("a verdict needs a search")
+    if law is not None:
+        laws = {law.name: len(law.regressed)}
+        adopt(state, law)
+        asked = promising(state, laws=laws)
+        if law.name in asked:
+            verdicts, judgement = judged(state, _asked(diagnosis, crew, request.seed, asked, told), laws)
+            if law.name in judgement.answers:
+                return verdicts, _with_law(diagnosis, judgement, law, names)
+        forsake(state, law)
+    return judged(state, _asked(diagnosis, crew, request.seed, names, told))
+
+
+def _with_law(diagnosis: Diagnosis, judgement: Judgement, law: Found, names: Sequence[str]) -> Judgement:
+    """The law into the outcome: put forward where it is the answer, beside the effects where it is one of several."""
+    outcome = diagnosis.outcome
+    outcome.titles[law.name] = f"{law.words[:1].upper()}{law.words[1:]} (not in the library)"
+    if judgement.verdict == "cannot_tell":
+        outcome.term = to_outcome(law)
+        return judgement
+    _put_forward(diagnosis, law)
+    outcome.term["instead_of"] = names[0]
+    return replace(judgement, why=f"{names[0]} would be named, but {law.words}, which is not in the library, is more probable")
 
 
 def _look_outside(request: Request, diagnosis: Diagnosis, crew: Crew, told: Told | None) -> None:
@@ -213,28 +228,24 @@ def _look_outside(request: Request, diagnosis: Diagnosis, crew: Crew, told: Told
     if not found.adequate:
         diagnosis.outcome.warnings.append(f"nearest of the generic terms: {found.words}; it leaves more than noise, and is not put forward")
         return
-    if not _put_forward(request, diagnosis, crew, found, told):
-        diagnosis.outcome.warnings.append(f"{found.words}: worse than nothing missing on the held-out landing, and not put forward")
-
-
-def _put_forward(request: Request, diagnosis: Diagnosis, crew: Crew, found: Found, told: Told | None) -> bool:
-    """The term into the outcome, unless the held-out landings, where there are any, do not gain by it."""
-    held, state = diagnosis.held, diagnosis.state
-    if state is None:
-        return False
-    closure = None
     adopt(state, found)
     gains = _asked(diagnosis, crew, request.seed, [found.name], told)
     if gains and gains[found.name][0] <= 0.0:
         forsake(state, found)
-        return False
+        diagnosis.outcome.warnings.append(f"{found.words}: worse than nothing missing on the held-out landing, and not put forward")
+        return
+    _put_forward(diagnosis, found)
+
+
+def _put_forward(diagnosis: Diagnosis, found: Found) -> None:
+    """The term into the outcome, with what it closes on the held-out landings."""
+    held, closure = diagnosis.held, None
     if held is not None:
         fits = diagnosis.holdout_fits
         before, after, count = fits[NULL.name].chi2, fits[found.name].chi2, held.landings.size
         closure = 1.0 - max(after - count, 0.0) / (before - count) if before > count else None
     diagnosis.found = found
     diagnosis.outcome.term = to_outcome(found, closure)
-    return True
 
 
 def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement) -> None:
@@ -303,7 +314,7 @@ def _candidate(diagnosis: Diagnosis, one: Judged, judgement: Judgement) -> Candi
         raise ValueError("a candidate needs a search")
     fit, first = state.fits[one.name], len(state.search.nuisances)
     parameters = {fit.coordinates[i].name: Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in range(first, len(fit.z))}
-    titles = [diagnosis.effects[n].title if n in diagnosis.effects else n for n in parts_of(one.name)]
+    titles = [diagnosis.outcome.titles.get(n, n) for n in parts_of(one.name)]
     p = judgement.probabilities[one.name]
     return Candidate(
         one.name, " + ".join(titles) or "Nothing missing", one.log_evidence, fit.chi2, p, one.adequacy, one.holdout_gain, parameters

@@ -40,12 +40,16 @@ def ask_holdouts(
     hear_noise(held, crew, null)
     null = renoised(held.landings, null)
     fits: dict[str, Fit] = {}
-    for name in names:
-        own = posterior_of(state.fits[name], len(state.search.nuisances))
-        fit = search.fit_once(Hypothesis(name, tuple(own)), null, STAGE)
-        fit = climbed_with(held, own, crew, seed, told) if fit is None or adequacy(fit, held.landings).p < ADEQUATE else fit
+    known = {name: Hypothesis(name, tuple(posterior_of(state.fits[name], len(state.search.nuisances)))) for name in names}
+    for name, hypothesis in known.items():
+        fit = search.fit_once(hypothesis, null, STAGE)
+        if fit is None or adequacy(fit, held.landings).p < ADEQUATE:
+            fit = climbed_with(held, hypothesis.coordinates, crew, seed, told)
         if fit is not None:
             null, fits[name] = exchanged(search, null, fit)
+    if len(fits) > 1:  # they decide between these names: none is to lose for its nuisances alone
+        best = min(fits, key=lambda name: fits[name].objective)
+        fits = search.back_substituted(fits, list(known.values()), [name for name in fits if name != best], best, margin=np.inf)
     if fits:
         hear_noise(held, crew, next(iter(fits.values())), best=True)
     fits = {n: renoised(held.landings, fit) for n, fit in {NULL.name: null, **fits}.items()}

@@ -188,13 +188,15 @@ class Search:
             fits = raced(self.landings, fits, rung, self.run)
         return fits
 
-    def back_substituted(self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str) -> dict[str, Fit]:
-        """Fits of `names` tried again from the winner's nuisances; kept where they are better."""
+    def back_substituted(
+        self, fits: dict[str, Fit], hypotheses: Sequence[Hypothesis], names: Sequence[str], winner: str, margin: float = MARGIN
+    ) -> dict[str, Fit]:
+        """Fits of `names`, those within the margin of the winner, tried again from its nuisances; kept where they are better."""
         point = self.without(fits[winner])
         if point is None:
             return fits
         known = {h.name: h for h in (*hypotheses, NULL)}
-        names = [n for n in names if n == NULL.name or fits[n].log_evidence > fits[winner].log_evidence - MARGIN]
+        names = [n for n in names if n == NULL.name or fits[n].log_evidence > fits[winner].log_evidence - margin]
         tasks = [self._at(self.landings, known[n], point, fits[n].z[len(point.z) :]) for n in names]
         ends = zip(names, self.run("back-substitution", tasks), strict=True)
         return self.if_better(fits, {n: fit for n, fit in ends if fit is not None}, "back-substitution")

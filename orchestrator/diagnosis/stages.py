@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,7 @@ OVERTAKES = 6.0  # in ln evidence over an adequate single: pairs that are kept; 
 HAND_OVERS = 2  # from a winner, and from whoever overtakes it by that
 MISLED = 8.0  # of φ: a base fit that proves so far from its best has misled the effects that were judged from it
 FOUND = 0.05  # s, standard deviation of a clock that is not as the data say: 93 were 0.04 off RMS, 0.10 at most
+NO_LAWS: Mapping[str, int] = MappingProxyType({})
 CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
 
 
@@ -249,27 +251,29 @@ def _take_in(state: State, pair: Hypothesis, fit: Fit) -> None:
     state.fits[pair.name] = fit
 
 
-def judged(state: State, holdouts: dict[str, tuple[float, float]]) -> tuple[list[Judged], Judgement]:
-    """All hypotheses, and the verdict. holdouts: name -> (gain, adequacy)."""
+def judged(
+    state: State, holdouts: Mapping[str, tuple[float, float]], laws: Mapping[str, int] = NO_LAWS
+) -> tuple[list[Judged], Judgement]:
+    """All hypotheses, and the verdict. holdouts: name -> (gain, adequacy). laws: those outside the library -> how many were tried."""
     null = state.fits[NULL.name].log_evidence
     found = []
     for name, fit in state.fits.items():
         p = adequacy(fit, state.setup.landings).p
         gain, held = holdouts.get(name, (None, None))
-        found.append(Judged(name, fit.log_evidence - null, p, gain, held))
-    return found, judge(found, _singles(state))
+        found.append(Judged(name, fit.log_evidence - null, p, gain, held, laws.get(name, 0)))
+    return found, judge(found, _singles(state, laws))
 
 
 def _ranked(state: State) -> list[str]:
     return sorted(state.fits, key=lambda n: -state.fits[n].log_evidence)
 
 
-def promising(state: State, most: int = 3) -> list[str]:
-    """Effects that might be named, and whose fit leaves no more than noise."""
-    found, _ = judged(state, {})
+def promising(state: State, most: int = 6, laws: Mapping[str, int] = NO_LAWS) -> list[str]:
+    """Effects and laws that might be named, and whose fit leaves no more than noise."""
+    found, _ = judged(state, {}, laws)
     adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
-    return [n for n in credible(found, _singles(state)) if n in adequate][:most]
+    return [n for n in credible(found, _singles(state, laws)) if n in adequate][:most]
 
 
-def _singles(state: State) -> int:
-    return sum(1 for h in state.hypotheses if len(parts_of(h.name)) == 1)
+def _singles(state: State, laws: Mapping[str, int]) -> int:
+    return sum(1 for h in state.hypotheses if len(parts_of(h.name)) == 1 and h.name not in laws)

@@ -1,8 +1,8 @@
 """From fits to a verdict: probabilities of the hypotheses, who is adequate, and when to abstain.
 
-Half of the prior belongs to nothing missing, the other half to the library in equal shares; all its pairs share a twentieth. The rules
-are those of docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing missing, and a held-out
-landing that gains.
+Half of the prior belongs to nothing missing, the other half to the library in equal shares; all its pairs share a twentieth, all laws
+outside it as much. The rules are those of docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing
+missing, and a held-out landing that gains. Where the fitted landings leave several answers, the held-out ones decide between them.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from math import log
 
 import numpy as np
-from scipy.special import expit
 
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import Verdict
@@ -35,6 +34,8 @@ class Judged:
     adequacy: float
     holdout_gain: float | None = None
     holdout_adequacy: float | None = None
+    laws: int = 0
+    """Of a law outside the library: how many were tried. 0: nothing missing, or of the library."""
 
     @property
     def stands(self) -> bool:
@@ -46,33 +47,48 @@ class Judged:
 
 def probabilities(hypotheses: Sequence[Judged], singles: int) -> dict[str, float]:
     """Posterior of each; `singles` is the size of the library."""
-    weights = [h.log_evidence + log(prior_of(h.name, singles)) for h in hypotheses]
+    weights = [h.log_evidence + log(prior_of(h, singles)) for h in hypotheses]
     shifted = np.exp(np.array(weights) - max(weights))
     return {h.name: float(w) for h, w in zip(hypotheses, shifted / shifted.sum(), strict=True)}
 
 
-def prior_of(name: str, singles: int) -> float:
-    """Of nothing missing, of an effect, of one of all pairs, not only those that looked worth fitting."""
-    parts, pairs = len(parts_of(name)), max(singles * (singles - 1) // 2, 1)
+def prior_of(one: Judged, singles: int) -> float:
+    """Of nothing missing, of a law outside the library, of an effect, of one of all pairs, not only those that looked worth fitting."""
+    if one.laws:
+        return 0.5 * OUTSIDE / one.laws
+    parts, pairs = len(parts_of(one.name)), max(singles * (singles - 1) // 2, 1)
     return 0.5 if parts == 0 else 0.5 * (1.0 - TOGETHER) / max(singles, 1) if parts == 1 else 0.5 * TOGETHER / pairs
 
 
-def outside_share(best: Judged, singles: int, log_evidence: float, terms: int) -> float:
-    """Probability of a law outside the library, one of so many, against the best of the library. Evidence over nothing missing."""
-    ahead = log_evidence + log(0.5 * OUTSIDE / max(terms, 1)) - best.log_evidence - log(prior_of(best.name, singles))
-    return float(expit(ahead))
-
-
 def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
-    """Effects from the top until they hold SURE of what all have together; none where evidence does not ask for an effect."""
+    """Effects and laws from the top until they hold SURE of what all have together; none where evidence does not ask for one."""
     found = probabilities(hypotheses, singles)
     evidence = {h.name: h.log_evidence for h in hypotheses}
     ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
     if not ranked or evidence[ranked[0]] - evidence[NULL.name] < BEATS or found[NULL.name] > 1.0 - SURE:
         return ()
-    total = sum(found[n] for n in ranked)
+    return _until_sure(found, ranked)
+
+
+def _until_sure(found: Mapping[str, float], names: Sequence[str]) -> tuple[str, ...]:
+    """Of these names from the most probable on; total: of all but nothing missing."""
+    ranked, total = sorted(names, key=lambda n: -found[n]), sum(p for n, p in found.items() if n != NULL.name)
     held = np.cumsum([found[n] / total for n in ranked])
     return tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
+
+
+def decided(found: Mapping[str, float], rivals: Sequence[Judged]) -> dict[str, float]:
+    """Probabilities once the held-out landings have said which rival foresees them better; as they were where not all were asked.
+
+    Evidence of one landing and then of another, with what the first taught as the prior, multiplies: Bayes' rule taken twice.
+    """
+    gains = [np.nan if one.holdout_gain is None else one.holdout_gain for one in rivals]
+    if len(rivals) < 2 or np.isnan(gains).any() or np.isneginf(max(gains)):
+        return dict(found)
+    weights = np.array([log(found[one.name]) + gain for one, gain in zip(rivals, gains, strict=True)])
+    shares = np.exp(weights - weights.max())
+    whole = sum(found[one.name] for one in rivals)
+    return dict(found) | {one.name: float(whole * s) for one, s in zip(rivals, shares / shares.sum(), strict=True)}
 
 
 @dataclass(frozen=True)
@@ -84,11 +100,14 @@ class Judgement:
     probabilities: Mapping[str, float]
     why: str = ""
     answers: tuple[str, ...] = ()
-    """Hypotheses, pairs among them, between which the data cannot tell, most probable first; the names are those of their effects."""
+    """Hypotheses, pairs among them, between which the data cannot tell, most probable first; the names are those of their effects.
+    With none_of_my_effects: the law outside the library that is more probable than any of it.
+    """
 
 
 def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
-    """hypotheses must hold nothing missing."""
+    """hypotheses must hold nothing missing; a law outside the library that does not stand is left out."""
+    hypotheses = [h for h in hypotheses if h.stands or not h.laws]
     found = probabilities(hypotheses, singles)
     known = {h.name: h for h in hypotheses}
     null, named = known[NULL.name], credible(hypotheses, singles)
@@ -98,6 +117,8 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
                 "none_of_my_effects", (), found, "nothing missing is not adequate, and no effect of the library is better by enough"
             )
         return Judgement("nothing_missing", (), found)
+    found = decided(found, [known[n] for n in named if known[n].adequacy >= ADEQUATE])
+    named = _until_sure(found, named)
     best = known[named[0]]
     standing = tuple(n for n in named if known[n].stands)
     if not standing:
@@ -111,6 +132,8 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
             f"the best of the library, {best.name}, leaves more than noise{held}",
         )
     if len(named) == 1 or (len(standing) == 1 and found[standing[0]] >= SURE):
+        if known[standing[0]].laws:
+            return Judgement("none_of_my_effects", (), found, answers=standing)
         return Judgement("effects" if len(parts_of(standing[0])) == 2 else "effect", parts_of(standing[0]), found)
     names = tuple(dict.fromkeys(part for n in named for part in parts_of(n)))
     return Judgement("cannot_tell", names, found, answers=named)

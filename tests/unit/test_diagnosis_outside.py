@@ -6,11 +6,10 @@ from typing import Any
 
 import pytest
 
-from orchestrator.diagnosis import diagnose
+from orchestrator.diagnosis import diagnose, stages
 from orchestrator.diagnosis.diagnose import Diagnosis, Request
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
 from orchestrator.diagnosis.outcome import Outcome
-from orchestrator.diagnosis.verdict import Judged, probabilities
 
 TERM = Hypothesis("torque", ())
 find_term = import_module("orchestrator.diagnosis.terms.find_term")  # the package gives the function that name
@@ -23,50 +22,59 @@ def state_of(evidence: dict[str, float]) -> Any:
     return SimpleNamespace(fits=fits, hypotheses=[Hypothesis(name, ()) for name in evidence if name != NULL.name], search=search)
 
 
-def judged(state: Any, holdouts: Any) -> tuple[list[Judged], Any]:
-    found = [Judged(name, fit.log_evidence, 0.5) for name, fit in state.fits.items()]
-    return found, SimpleNamespace(probabilities=probabilities(found, 47))
-
-
 @pytest.mark.parametrize(
-    ("named", "term", "adequate", "gain", "overtaken", "share"),
+    ("named", "term", "adequate", "gains", "verdict"),
     [
-        ("damping", 21.0, True, 5.0, False, ""),  # a sixteenth
-        ("damping", 22.0, True, 5.0, False, "15 %"),  # 2 ahead: a single effect has the better prior
-        ("damping", 24.0, True, 5.0, True, ""),
-        ("damping", 24.0, False, 5.0, False, ""),  # leaves more than noise
-        ("damping", 24.0, True, -1.0, False, ""),  # worse on the held-out landing
-        ("damping + slope", 18.0, True, 5.0, True, ""),  # 2 behind a pair
-        ("damping + slope", 17.0, True, 5.0, False, "35 %"),
-        ("damping", None, True, 5.0, False, ""),
+        ("damping", 21.0, True, {"damping": 5.0}, "effect"),  # a sixteenth
+        ("damping", 22.0, True, {"damping": 5.0, "torque": 5.0}, "cannot_tell"),  # 15 %: a single effect has the better prior
+        ("damping", 22.0, True, {"damping": 5.0, "torque": 9.5}, "none_of_my_effects"),  # the held-out landing decides
+        ("damping", 22.0, True, {"damping": 9.0, "torque": 5.0}, "effect"),
+        ("damping", 26.5, True, {"torque": 5.0}, "none_of_my_effects"),
+        ("damping", 26.5, False, {"damping": 5.0}, "effect"),  # leaves more than noise
+        ("damping", 26.5, True, {"damping": 5.0, "torque": -1.0}, "effect"),  # worse on the held-out landing
+        ("damping + slope", 20.5, True, {"torque": 5.0}, "none_of_my_effects"),  # a pair has a poorer prior than a law
+        ("damping + slope", 17.0, True, {"damping + slope": 5.0, "torque": 5.0}, "cannot_tell"),
+        ("damping", None, True, {"damping": 5.0}, "effect"),
     ],
 )
-def test_the_more_probable_of_both_is_said(
-    monkeypatch: Any, named: str, term: float | None, adequate: bool, gain: float, overtaken: bool, share: str
+def test_a_law_outside_is_one_answer_more(
+    monkeypatch: Any, named: str, term: float | None, adequate: bool, gains: dict[str, float], verdict: str
 ) -> None:
     state = state_of({NULL.name: 0.0, named: 20.0})
     fit = SimpleNamespace(log_evidence=term, chi2=100.0)
-    tried = dict.fromkeys(range(100))
-    found = SimpleNamespace(name=TERM.name, fit=fit, hypothesis=TERM, adequate=adequate, log_evidence=term, regressed=tried)
-    found.second, found.words = None, "a torque"
+    found: Any = SimpleNamespace(name=TERM.name, fit=fit, hypothesis=TERM, adequate=adequate, log_evidence=term, second=None)
+    found.regressed, found.words, found.adequacy = dict.fromkeys(range(100)), "a torque", 0.5
     monkeypatch.setattr(diagnose, "find_term", lambda *_: found if term is not None else None)
-    monkeypatch.setattr(diagnose, "judged", judged)
-    monkeypatch.setattr(diagnose, "to_outcome", lambda found, closure: {"words": found.name, "closure": closure})
+    monkeypatch.setattr(stages, "adequacy", lambda *_: SimpleNamespace(p=0.5))
+    monkeypatch.setattr(stages, "_singles", lambda *_: 47)
+    monkeypatch.setattr(diagnose, "to_outcome", lambda found, closure=None: {"words": found.name, "closure": closure})
     held_fits = {NULL.name: SimpleNamespace(chi2=300.0), TERM.name: SimpleNamespace(chi2=110.0)}
-    monkeypatch.setattr(diagnose, "ask_holdouts", lambda *_: (held_fits, {TERM.name: (gain, 0.5)}))
-    setup: Any = SimpleNamespace(hypotheses=[None] * 47)
+    asked: set[str] = set()
+
+    def ask(state: Any, held: Any, crew: Any, seed: int, names: list[str], told: Any) -> Any:
+        asked.update(names)
+        return held_fits, {name: (gains[name], 0.5) for name in names}
+
+    monkeypatch.setattr(diagnose, "ask_holdouts", ask)
+    setup: Any = SimpleNamespace(landings=None)
     held: Any = SimpleNamespace(landings=SimpleNamespace(size=100))
+    state.setup = setup
     diagnosis = Diagnosis(Outcome("nothing_missing"), setup, held, state)
     crew: Any = None
     request = Request(scenario=diagnose.Path(), measured=())
 
-    assert diagnose._overtaken_from_outside(request, diagnosis, crew, [named], None) == overtaken
-    assert (diagnosis.found is found) == overtaken
-    assert (TERM.name in state.fits) == overtaken
-    assert sorted(len(parts_of(h.name)) for h in state.hypotheses) == sorted([len(parts_of(named)), *([1] if overtaken else [])])
-    assert [share in warning for warning in diagnosis.outcome.warnings] == ([True] if share else [])
-    if overtaken:
-        assert diagnosis.outcome.term == {"words": TERM.name, "closure": pytest.approx(0.95)}
+    law = diagnose._law_outside(request, diagnosis, crew, [named], None)
+    _, judgement = diagnose._judged(request, diagnosis, crew, [named], law, None)
+    alone, beside = verdict == "none_of_my_effects", verdict == "cannot_tell"
+    assert judgement.verdict == ("effects" if verdict == "effect" and len(parts_of(named)) > 1 else verdict)
+    assert judgement.answers == ((named, TERM.name) if beside else (TERM.name,) if alone else ())
+    assert asked == set(gains)
+    assert (diagnosis.found is found) == alone
+    assert (TERM.name in state.fits) == (TERM in state.hypotheses) == (alone or beside)
+    closure = pytest.approx(0.95) if alone else None
+    more = {"instead_of": named} if alone else {}
+    assert diagnosis.outcome.term == ({"words": TERM.name, "closure": closure} | more if alone or beside else {})
+    assert (TERM.name in diagnosis.outcome.titles) == (alone or beside)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,12 @@
 """The rules of a verdict, on hypotheses whose fits are made up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from orchestrator.diagnosis.hypothesis import NULL
-from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, judge, outside_share, probabilities
+from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, decided, judge, probabilities
 
 LIBRARY = 40
 FINE, POOR = 0.4, 1e-6
@@ -94,13 +96,62 @@ def test_half_of_the_prior_is_nothing_missing_and_the_library_shares_the_rest() 
     assert sum(found.values()) == pytest.approx(1.0)
 
 
+def shares(*hypotheses: Judged) -> tuple[float, ...]:
+    found = probabilities([null(POOR), *hypotheses], 47)
+    return tuple(found[h.name] for h in hypotheses)
+
+
 def test_a_law_outside_the_library_must_lead_a_single_by_what_its_prior_asks_and_may_trail_a_pair() -> None:
-    single, pair = Judged("damping", 20.0, 0.5), Judged("damping + slope", 20.0, 0.5)
+    single, pair = Judged("damping", 40.0, FINE), Judged("damping + slope", 40.0, FINE)
     asked = np.log((1.0 - TOGETHER) / 47 * 100 / OUTSIDE)
     assert asked == pytest.approx(3.70, abs=0.01)
-    assert outside_share(single, 47, 20.0 + asked, 100) == pytest.approx(0.5)
+    assert shares(single, Judged("law", 40.0 + asked, FINE, laws=100)) == pytest.approx((0.5, 0.5))
     behind = np.log(47 * 46 / 2 / 100)  # 1081 pairs and 100 laws share as much
-    assert outside_share(pair, 47, 20.0 - behind, 100) == pytest.approx(0.5)
-    assert outside_share(pair, 47, 20.0 - behind - np.log(9.0), 100) == pytest.approx(0.1)
-    assert outside_share(pair, 47, 1020.0, 100) == 1.0
-    assert outside_share(pair, 47, -1020.0, 100) == 0.0
+    assert shares(pair, Judged("law", 40.0 - behind, FINE, laws=100)) == pytest.approx((0.5, 0.5))
+    assert shares(pair, Judged("law", 40.0 - behind - np.log(9.0), FINE, laws=100)) == pytest.approx((0.9, 0.1))
+
+
+def with_law(*hypotheses: Judged) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+    found = judge([null(POOR), *hypotheses], 47)
+    return found.verdict, found.names, found.answers
+
+
+def test_a_law_outside_the_library_has_its_place_among_the_answers() -> None:
+    pair, law = Judged("a + b", 119.7, FINE), Judged("law", 115.8, FINE, laws=100)  # a torque that two frictions imitate: 4.6 to 1
+    assert with_law(pair, law) == ("cannot_tell", ("a", "b", "law"), ("a + b", "law"))
+    assert with_law(pair, replace(law, log_evidence=113.0)) == ("effects", ("a", "b"), ())
+    assert with_law(pair, replace(law, log_evidence=123.0)) == ("none_of_my_effects", (), ("law",))
+    assert with_law(pair, replace(law, adequacy=1e-3)) == ("effects", ("a", "b"), ())
+    assert with_law(replace(pair, holdout_gain=5.0, holdout_adequacy=FINE), replace(law, holdout_gain=-1.0, holdout_adequacy=FINE)) == (
+        "effects",
+        ("a", "b"),
+        (),
+    )
+
+
+@pytest.mark.parametrize(
+    ("gains", "verdict", "names"),
+    [
+        ((30.0, 31.0), "cannot_tell", ("a", "b")),
+        ((30.0, 36.0), "effect", ("b",)),
+        ((30.0, 20.0), "effect", ("a",)),
+        ((30.0, None), "cannot_tell", ("a", "b")),  # not asked: it may be the better one
+        ((30.0, -np.inf), "effect", ("a",)),  # cannot be flown
+        ((-1.0, -2.0), "none_of_my_effects", ()),
+    ],
+)
+def test_held_out_landings_decide_between_what_the_fitted_ones_cannot_tell(
+    gains: tuple[float, float | None], verdict: str, names: tuple[str, ...]
+) -> None:
+    both = [Judged(n, e, FINE, gain, None if gain is None else FINE) for n, e, gain in zip("ab", (60.0, 59.0), gains, strict=True)]
+    assert named(null(POOR), *both) == (verdict, names)
+
+
+def test_held_out_landings_do_not_overrule_what_the_fitted_ones_are_sure_of() -> None:
+    assert named(null(POOR), Judged("a", 60.0, FINE, 5.0, FINE), Judged("b", 50.0, FINE, 50.0, FINE)) == ("effect", ("a",))
+
+
+def test_evidence_of_two_landings_multiplies_and_leaves_to_the_others_what_they_had() -> None:
+    found = decided({"a": 0.6, "b": 0.3, "c": 0.1}, [Judged("a", 0.0, FINE, 10.0), Judged("b", 0.0, FINE, 10.0 + np.log(2.0))])
+    assert found == pytest.approx({"a": 0.45, "b": 0.45, "c": 0.1})
+

@@ -111,7 +111,9 @@ def test_what_is_in_every_pair_that_is_left_is_said_to_be_missing(tmp_path: Path
         " These data cannot tell a step under pad +Y from a step under pad -Z: measure"
     )
     alone = replace(told, cannot_tell=replace(told.cannot_tell, answers=["soil_damping + step_+Y", "soil_damping"]))
-    assert verdict_sentence(alone).startswith("These data cannot tell soil damping at all pads from a step")
+    assert verdict_sentence(alone).startswith(
+        "These data cannot tell soil damping at all pads with a step under pad +Y from soil damping at all pads: measure"
+    )
     page = read(write_report(tmp_path, told, []))
     assert "What would decide between a step under pad +Y and a step under pad -Z" in "".join(page.texts).replace("\u00a0", " ")
 

@@ -126,9 +126,10 @@ def in_every_pair(outcome: Outcome) -> list[str]:
 
 
 def undecided(outcome: Outcome) -> list[str]:
-    """The effects, in the middle of a sentence, that the data cannot tell apart."""
+    """What the data cannot tell apart, in the middle of a sentence: the answers, less what is in all of them."""
     common = in_every_pair(outcome)
-    return [inside(title_of(outcome, name)) for name in outcome.cannot_tell.names if name not in common]
+    answers = [parts_of(answer) for answer in outcome.cannot_tell.answers] or [(name,) for name in outcome.cannot_tell.names]
+    return [" with ".join(inside(title_of(outcome, name)) for name in parts if name not in common) for parts in answers]
 
 
 def _within(channel: str, sigma: float) -> str:
