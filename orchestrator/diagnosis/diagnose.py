@@ -313,12 +313,20 @@ def _candidate(diagnosis: Diagnosis, one: Judged, judgement: Judgement) -> Candi
     if state is None:
         raise ValueError("a candidate needs a search")
     fit, first = state.fits[one.name], len(state.search.nuisances)
-    parameters = {fit.coordinates[i].name: Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in range(first, len(fit.z))}
     titles = [diagnosis.outcome.titles.get(n, n) for n in parts_of(one.name)]
+    owners = [n for n in parts_of(one.name) for _ in (diagnosis.effects[n].parameters if n in diagnosis.effects else "1")]
+    estimates = [Estimate(*fit.estimate(i), fit.coordinates[i].unit) for i in range(first, len(fit.z))]
+    parameters = _by_name([(n, c.name, it) for n, c, it in zip(owners, fit.coordinates[first:], estimates, strict=True)])
     p = judgement.probabilities[one.name]
     return Candidate(
         one.name, " + ".join(titles) or "Nothing missing", one.log_evidence, fit.chi2, p, one.adequacy, one.holdout_gain, parameters
     )
+
+
+def _by_name(estimates: Sequence[tuple[str, str, Estimate]]) -> dict[str, Estimate]:
+    """(effect, parameter, estimate) by parameter; by effect.parameter where both effects of a pair call one alike."""
+    names = [name for _, name, _ in estimates]
+    return {name if names.count(name) == 1 else f"{effect}.{name}": estimate for effect, name, estimate in estimates}
 
 
 def _named(diagnosis: Diagnosis, name: str, whole: str, probability: float) -> NamedEffect:

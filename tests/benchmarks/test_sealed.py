@@ -252,6 +252,21 @@ def test_a_law_outside_the_library_is_known_by_port_and_exponents() -> None:
 
 
 @pytest.mark.parametrize(
+    ("kind", "names", "port", "answer"),
+    [
+        ("outside", ["a", "found"], "soil.normal", "set"),
+        ("outside", ["a", "found"], "body", "wrong set"),
+        ("outside", ["a", "b"], "soil.normal", "wrong set"),
+        ("single 49", ["hidden", "found"], "body", "set"),
+        ("single 49", ["a", "found"], "body", "wrong set"),
+    ],
+)
+def test_a_law_outside_may_stand_in_a_set(kind: str, names: list[str], port: str, answer: str) -> None:
+    said = {"verdict": "cannot_tell", "cannot_tell": {"names": names}, "term": {"name": "found", "port": port}}
+    assert scoring.scored("0", key(kind, "hidden"), said).answer == answer
+
+
+@pytest.mark.parametrize(
     ("hits", "n", "low", "high"),
     # Newcombe (1998), Statistics in Medicine 17, 857, table I, method 3
     [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718), (29, 29, 0.8830, 1.0)],

@@ -9,7 +9,7 @@ import pytest
 from orchestrator.diagnosis import diagnose, stages
 from orchestrator.diagnosis.diagnose import Diagnosis, Request
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, parts_of
-from orchestrator.diagnosis.outcome import Outcome
+from orchestrator.diagnosis.outcome import Estimate, Outcome
 
 TERM = Hypothesis("torque", ())
 find_term = import_module("orchestrator.diagnosis.terms.find_term")  # the package gives the function that name
@@ -104,3 +104,9 @@ def test_terms_are_regressed_beside_a_name_only_where_one_could_take_over(
     crew: Any = None
     assert find_term.find_term(state, setup, crew, beat=evidence) is None
     assert bool(regressed) == asked
+
+
+def test_parameters_of_a_pair_that_are_called_alike_keep_both_their_numbers() -> None:
+    one, two, three = (Estimate(value, 0.1, "1") for value in (1.0, 2.0, 3.0))
+    both = [("friction_-Z", "friction", one), ("friction_+Y", "friction", two), ("friction_+Y", "rate", three)]
+    assert diagnose._by_name(both) == {"friction_-Z.friction": one, "friction_+Y.friction": two, "rate": three}
