@@ -32,6 +32,7 @@ Random = np.random.Generator
 Landed = tuple[Array, dict[str, float]]
 DRAWS = 12  # effects tried for one case before the case is given up
 FIT, HOLDOUT = 0, 1
+WHOLE = slice(None)
 FINE = {"tolerance": TOLERANCE, "longest_step": LONGEST}  # of the twin, for λ: as a search flies
 MOVED = (0.5, 1.0)  # how far a landing's conditions are from the scenario's, in scene.MOVED
 
@@ -41,14 +42,21 @@ class UnmadeError(Exception):
 
 
 def make(
-    out: Path, keys: Path, n: int, seed: int, kinds: tuple[str, ...] = (), told: Callable[[int], None] | None = None, jobs: int = 1
+    out: Path,
+    keys: Path,
+    n: int,
+    seed: int,
+    kinds: tuple[str, ...] = (),
+    told: Callable[[int], None] | None = None,
+    jobs: int = 1,
+    part: slice = WHOLE,
 ) -> None:
-    """The whole set, `jobs` cases at a time; `keys` must lie outside `out`."""
+    """The set of n cases, or a part of it, `jobs` cases at a time; `keys` must lie outside `out`."""
     if keys.resolve().is_relative_to(out.resolve()) or out.resolve().is_relative_to(keys.resolve()):
         raise ValueError(f"{keys}: keys beside the data are no secret; give a folder outside {out}")
     keys.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_begin) as pool:
-        futures = [pool.submit(_make_one, plan, seed, out, keys) for plan in plans(n, seed, kinds)]
+        futures = [pool.submit(_make_one, plan, seed, out, keys) for plan in plans(n, seed, kinds)[part]]
         try:
             for future in as_completed(futures):
                 number = future.result()

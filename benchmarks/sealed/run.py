@@ -49,7 +49,9 @@ def _parser() -> argparse.ArgumentParser:
     making = commands.add_parser("make", help="write cases and keys")
     making.add_argument("--set", type=Path, required=True, help="folder of the public side")
     making.add_argument("--keys", type=Path, required=True, help="folder of the keys, outside the set")
-    making.add_argument("--cases", type=int, default=100)
+    making.add_argument("--cases", type=int, default=100, help="of the whole set")
+    making.add_argument("--from", dest="first", type=int, default=0, metavar="NUMBER", help="make a part: from this case on")
+    making.add_argument("--until", type=int, metavar="NUMBER", help="and those before this one")
     making.add_argument("--seed", type=int, required=True, help="secret: it makes the same cases again")
     making.add_argument("--jobs", type=int, default=2, help="cases at a time, one process each")
     making.add_argument("--kind", action="append", choices=list(SHARES), help="only these kinds, in turn")
@@ -72,8 +74,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _make(options: argparse.Namespace) -> int:
-    with _bar("cases", options.cases) as told:
-        make(options.set, options.keys, options.cases, options.seed, tuple(options.kind or ()), lambda _: told(), options.jobs)
+    part = range(options.cases)[options.first : options.until]
+    if not part:
+        asked = f"--from {options.first} --until {options.until or options.cases}"
+        raise ValueError(f"{asked}: none of the {options.cases} cases, which are numbered from 0")
+    with _bar("cases", len(part)) as told:
+        chosen = slice(part.start, part.stop)
+        make(options.set, options.keys, options.cases, options.seed, tuple(options.kind or ()), lambda _: told(), options.jobs, chosen)
     return 0
 
 

@@ -4,6 +4,8 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from sealed import diagnoses, report, scoring, sealing, targets
 from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
-from sealed.kinds import SHARES, counts, plans
+from sealed.kinds import SHARES, Plan, counts, plans
 from sealed.make import FINE, made, make, scenes_of
 from sealed.pool import pooled
 from sealed.vehicle import ZUPP, Vehicle
@@ -75,6 +77,17 @@ def test_kinds_add_up_and_their_order_says_nothing() -> None:
 def test_keys_inside_the_set_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="give a folder outside"):
         make(tmp_path / "set", tmp_path / "set" / "keys", 1, 1)
+
+
+def test_a_part_holds_the_cases_that_the_whole_set_has_at_their_places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Plan] = []
+    module = import_module("sealed.make")
+    monkeypatch.setattr(module, "ProcessPoolExecutor", lambda jobs, *_, **__: ThreadPoolExecutor(jobs))
+    monkeypatch.setattr(module, "_make_one", lambda plan, *_: made.append(plan) or plan.number)
+    (tmp_path / "set").mkdir()
+    make(tmp_path / "set", tmp_path / "keys", 20, 5, part=slice(8, 11))
+    assert made == plans(20, 5)[8:11]
+    assert [plan.number for plan in made] == [8, 9, 10]
 
 
 def test_signature_energy_equals_the_dense_formula(vehicle: Vehicle, lander: TwinLander) -> None:
