@@ -98,12 +98,12 @@ def test_terms_are_regressed_beside_a_name_only_where_one_could_take_over(
     ends = SimpleNamespace(log_evidence=fitted)
     monkeypatch.setattr(find_term, "begun_there", lambda search, fit, rivals, _: {h.name: ends for h in rivals})
     regressed: list[Any] = []
-    monkeypatch.setattr(find_term, "regressed", lambda regression, *_: regressed.append(regression))
+    monkeypatch.setattr(find_term, "regressed", lambda regression, *_: regressed.append(dict(regression.fits)))
     setup: Any = SimpleNamespace(why_slow="", addresses=None)
     state.base, state.search.told = None, None
     crew: Any = None
     assert find_term.find_term(state, setup, crew, beat=evidence) is None
-    assert bool(regressed) == asked
+    assert regressed == ([{TERM.name: ends}] if asked else [])
 
 
 def test_parameters_of_a_pair_that_are_called_alike_keep_both_their_numbers() -> None:

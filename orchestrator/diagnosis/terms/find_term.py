@@ -26,7 +26,6 @@ from orchestrator.diagnosis.verdict import ADEQUATE, BEATS
 
 SECONDS = 12  # terms that are tried beside the first
 COULD = 15.0, 0.25  # of ln evidence, or of what is to be beaten: a term that takes over from the best and promises so much less is no rival
-SHARE = 0.25  # of what is to be beaten: slopes that promise less promise nothing
 
 
 def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told | None = None, beat: float = -np.inf) -> Found | None:
@@ -40,13 +39,15 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     search = state.search
     search.crew, search.told = crew, told or search.told
     known = in_scenario(dictionary(), setup.addresses)
-    regression = Regression(search, {n: term for n, (term, _) in known.items()}, {n: h for n, (_, h) in known.items()}, SHARE * beat)
+    regression = Regression(search, {n: term for n, (term, _) in known.items()}, {n: h for n, (_, h) in known.items()})
     tried = {part for name in state.fits for part in parts_of(name)}
     offered = [n for n, (term, _) in known.items() if term.equals not in tried]
     base = state.fits.get(NULL.name, state.base)
     best = best_of_library(state.fits)
-    if best is not None and np.isfinite(beat) and not _could_take_over(search, best, [known[n][1] for n in offered], beat):
-        return None
+    if best is not None and np.isfinite(beat):
+        regression.keep(_taking_over(search, best, [known[n][1] for n in offered], beat))
+        if not regression.fits:
+            return None
     winner = regressed(regression, base, best, offered)
     null = base.log_evidence
     if winner is None or regression.fits[winner].log_evidence - null < BEATS:
@@ -55,12 +56,12 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     return with_second(regression, found, offered, null)
 
 
-def _could_take_over(search: Search, best: Fit, terms: Sequence[Hypothesis], beat: float) -> bool:
-    """Whether any term does nearly as well in the place of the best fit's effect: by the slopes there, and fitted from where they lead."""
+def _taking_over(search: Search, best: Fit, terms: Sequence[Hypothesis], beat: float) -> dict[str, Fit]:
+    """Terms that do nearly as well in the place of the best fit's effect: by the slopes there, and fitted from where they lead."""
     least = best.log_evidence - max(COULD[0], COULD[1] * beat)
     promised = offers(search, best, terms)
     near = [h for h in terms if promised[h.name][0] > least]
-    return any(fit.log_evidence > least for fit in begun_there(search, best, near, promised).values())
+    return {name: fit for name, fit in begun_there(search, best, near, promised).items() if fit.log_evidence > least}
 
 
 def adopt(state: State, found: Found) -> None:

@@ -41,8 +41,6 @@ class Regression:
     search: Search
     terms: Mapping[str, Term]
     hypotheses: Mapping[str, Hypothesis]
-    least: float = -np.inf
-    """In ln evidence: what slopes must promise of a term, at some view, for it to be probed."""
     views: list[View] = field(default_factory=list)
     promised: dict[str, float] = field(default_factory=dict)
     """ln evidence by the last view that has the term."""
@@ -117,16 +115,18 @@ class Regression:
 
 
 def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Sequence[str]) -> str | None:
-    """All of it; the best of the terms `offered`, None where none of them can be flown."""
+    """All of it; the best of the terms `offered`, None where none of them can be flown.
+
+    Where some have fits already, only these are probed.
+    """
     search = regression.search
     here = point_of(base)
     there = search.without(better) if better is not None else None
-    for point in (here, there):
+    begun = list(regression.fits)
+    for point in (here, there) if not begun else (there or here,):
         if point is not None:
             regression.look_from(View(point.z, point.predicted, point.slopes), list(regression.hypotheses))
-    first = [n for n in chosen(regression, offered) if regression.gains[n] >= regression.least]
-    if not first:
-        return None
+    first = begun or chosen(regression, offered)
     regression.keep(search.probed([regression.hypotheses[n] for n in first], here, "terms"))
     if not explains(base.chi2, search.landings.size):
         few = [regression.hypotheses[n] for n in first[:CLIMBING]]
