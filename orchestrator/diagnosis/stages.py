@@ -24,7 +24,7 @@ from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import LEAST, Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.predict import Land
-from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, credible, judge
+from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, contenders, judge
 
 Array = NDArray[np.float64]
 GRID = 0.01  # s, of courses to look at
@@ -269,10 +269,10 @@ def _ranked(state: State) -> list[str]:
 
 
 def promising(state: State, most: int = 6, laws: Mapping[str, int] = NO_LAWS) -> list[str]:
-    """Effects and laws that might be named, and whose fit leaves no more than noise."""
+    """Effects and laws that might be named, or come close to it, and whose fit leaves no more than noise."""
     found, _ = judged(state, {}, laws)
     adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
-    return [n for n in credible(found, _singles(state, laws)) if n in adequate][:most]
+    return [n for n in contenders(found, _singles(state, laws)) if n in adequate][:most]
 
 
 def _singles(state: State, laws: Mapping[str, int]) -> int:

@@ -2,14 +2,14 @@
 
 Half of the prior belongs to nothing missing, the other half to the library in equal shares; all its pairs share a twentieth, all laws
 outside it as much. The rules are those of docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing
-missing, and a held-out landing that gains. Where the fitted landings leave several answers, the held-out ones decide between them.
+missing, and a held-out landing that gains. Between answers that the fitted landings leave within CLOSE the held-out ones decide.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import log
+from math import exp, log
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from orchestrator.diagnosis.outcome import Verdict
 
 SURE = 0.9
 BEATS = 5.0  # ln evidence above nothing missing
+CLOSE = 5.0  # ln probability behind the best: rivals that the held-out landings are asked about, too
 ADEQUATE = 0.01  # p-value of a residual
 BY_CHANCE = 10.0  # ln evidence above nothing missing that noise may lend an effect; in three nulls and a decoy 1.9 at most
 LOST = 1e-3  # p-value below which nothing missing is refused by itself
@@ -70,6 +71,15 @@ def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
     return _until_sure(found, ranked)
 
 
+def contenders(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
+    """The credible and whoever comes CLOSE to the best of them, most probable first."""
+    named, found = credible(hypotheses, singles), probabilities(hypotheses, singles)
+    if not named:
+        return ()
+    near = [n for n, p in found.items() if n != NULL.name and (n in named or p > found[named[0]] * exp(-CLOSE))]
+    return tuple(sorted(near, key=lambda n: -found[n]))
+
+
 def _until_sure(found: Mapping[str, float], names: Sequence[str]) -> tuple[str, ...]:
     """Of these names from the most probable on; total: of all but nothing missing."""
     ranked, total = sorted(names, key=lambda n: -found[n]), sum(p for n, p in found.items() if n != NULL.name)
@@ -110,7 +120,7 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     hypotheses = [h for h in hypotheses if h.stands or not h.laws]
     found = probabilities(hypotheses, singles)
     known = {h.name: h for h in hypotheses}
-    null, named = known[NULL.name], credible(hypotheses, singles)
+    null, named = known[NULL.name], contenders(hypotheses, singles)
     if not named:
         if null.adequacy < LOST:
             return Judgement(

@@ -25,14 +25,17 @@ def state_of(evidence: dict[str, float]) -> Any:
 @pytest.mark.parametrize(
     ("named", "term", "adequate", "gains", "verdict"),
     [
-        ("damping", 21.0, True, {"damping": 5.0}, "effect"),  # a sixteenth
+        ("damping", 18.0, True, {"damping": 5.0}, "effect"),  # 5.7 behind: not asked
+        ("damping", 21.0, True, {"damping": 5.0, "torque": 5.0}, "effect"),  # a sixteenth
+        ("damping", 21.0, True, {"damping": 5.0, "torque": 10.5}, "none_of_my_effects"),
         ("damping", 22.0, True, {"damping": 5.0, "torque": 5.0}, "cannot_tell"),  # 15 %: a single effect has the better prior
         ("damping", 22.0, True, {"damping": 5.0, "torque": 9.5}, "none_of_my_effects"),  # the held-out landing decides
         ("damping", 22.0, True, {"damping": 9.0, "torque": 5.0}, "effect"),
-        ("damping", 26.5, True, {"torque": 5.0}, "none_of_my_effects"),
+        ("damping", 26.5, True, {"damping": 5.0, "torque": 5.0}, "none_of_my_effects"),
+        ("damping", 29.0, True, {"torque": 5.0}, "none_of_my_effects"),
         ("damping", 26.5, False, {"damping": 5.0}, "effect"),  # leaves more than noise
         ("damping", 26.5, True, {"damping": 5.0, "torque": -1.0}, "effect"),  # worse on the held-out landing
-        ("damping + slope", 20.5, True, {"torque": 5.0}, "none_of_my_effects"),  # a pair has a poorer prior than a law
+        ("damping + slope", 20.5, True, {"damping + slope": 5.0, "torque": 5.0}, "none_of_my_effects"),  # a pair: poorer prior
         ("damping + slope", 17.0, True, {"damping + slope": 5.0, "torque": 5.0}, "cannot_tell"),
         ("damping", None, True, {"damping": 5.0}, "effect"),
     ],

@@ -147,8 +147,14 @@ def test_held_out_landings_decide_between_what_the_fitted_ones_cannot_tell(
     assert named(null(POOR), *both) == (verdict, names)
 
 
-def test_held_out_landings_do_not_overrule_what_the_fitted_ones_are_sure_of() -> None:
-    assert named(null(POOR), Judged("a", 60.0, FINE, 5.0, FINE), Judged("b", 50.0, FINE, 50.0, FINE)) == ("effect", ("a",))
+def test_held_out_landings_overrule_only_what_the_fitted_ones_leave_close() -> None:
+    def a_before_b(b: float, gain: float) -> tuple[str, tuple[str, ...]]:
+        return named(null(POOR), Judged("a", 60.0, FINE, 20.0, FINE), Judged("b", b, FINE, gain, FINE))
+
+    assert a_before_b(55.5, 20.0) == ("effect", ("a",))
+    assert a_before_b(55.5, 24.0) == ("cannot_tell", ("a", "b"))
+    assert a_before_b(55.5, 30.0) == ("effect", ("b",))
+    assert a_before_b(54.5, 30.0) == ("effect", ("a",))
 
 
 def test_evidence_of_two_landings_multiplies_and_leaves_to_the_others_what_they_had() -> None:

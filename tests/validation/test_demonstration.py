@@ -52,8 +52,6 @@ def diagnosed(folder: Path) -> Diagnosis:
 
 
 MISSED = {
-    "a law outside the library": "said friction under -Z and under +Y with more than 99.9 %, 119.7 in ln evidence; the law stands at 115.8,"
-    " as from the truth (φ 476.1; the pair 465.6): 4.6 to 1 by the priors, which a warning tells",
     "the other of the two, where noise misleads": "hidden telemetry_lowpass 5.66 ms, λ 30; said clock_offset with probability 0.98:"
     " χ² 859.5 of 920 against 871.2, 4.0 ahead in ln evidence; without noise the filter is 3 better in φ: no twin by its clean data",
 }
