@@ -25,7 +25,7 @@ from orchestrator.diagnosis.report import verdict_sentence as sentence
 from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
-from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, try_pairs
+from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, to_be_asked, try_pairs
 from orchestrator.diagnosis.terms.find_term import adopt, find_term, forsake
 from orchestrator.diagnosis.terms.found import Found, to_outcome
 from orchestrator.diagnosis.verdict import Judged, Judgement
@@ -138,10 +138,10 @@ def _searched(
     if crew.flown < request.budget:
         try_pairs(state)
     diagnosis = Diagnosis(outcome, setup, held, state, effects=effects)
-    names = promising(state) if crew.flown < request.budget else promising(state, 1)
+    names = promising(state)
     try:
         law = _law_outside(request, diagnosis, crew, names, told) if names and crew.flown < request.budget else None
-        verdicts, judgement = _judged(request, diagnosis, crew, names, law, told)
+        verdicts, judgement = _judged(request, diagnosis, crew, law, told)
     except UnflyableError:
         raise _unflyable(request, held or setup) from None
     diagnosis.judgement = judgement
@@ -187,22 +187,23 @@ def _law_outside(request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequ
 
 
 def _judged(
-    request: Request, diagnosis: Diagnosis, crew: Crew, names: Sequence[str], law: Found | None, told: Told | None
+    request: Request, diagnosis: Diagnosis, crew: Crew, law: Found | None, told: Told | None
 ) -> tuple[list[Judged], Judgement]:
-    """The verdict on what would be named and, where there is one, on a law outside the library beside it."""
+    """The verdict on the effects and, where there is one, on a law outside the library beside them."""
     state = diagnosis.state
     if state is None:
         raise ValueError("a verdict needs a search")
+    names = to_be_asked(state)
     if law is not None:
         laws = {law.name: len(law.regressed)}
         adopt(state, law)
-        asked = promising(state, laws=laws)
+        asked = to_be_asked(state, laws)
         if law.name in asked:
             verdicts, judgement = judged(state, _asked(diagnosis, crew, request.seed, asked, told), laws)
             if law.name in judgement.answers:
                 return verdicts, _with_law(diagnosis, judgement, law, names)
         forsake(state, law)
-    return judged(state, _asked(diagnosis, crew, request.seed, names, told))
+    return judged(state, _asked(diagnosis, crew, request.seed, names if crew.flown < request.budget else names[:1], told))
 
 
 def _with_law(diagnosis: Diagnosis, judgement: Judgement, law: Found, names: Sequence[str]) -> Judgement:

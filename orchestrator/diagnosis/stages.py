@@ -24,7 +24,7 @@ from orchestrator.diagnosis.pairs import fit_seconds
 from orchestrator.diagnosis.search import LEAST, Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.predict import Land
-from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, contenders, judge
+from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, Judged, Judgement, contenders, credible, judge
 
 Array = NDArray[np.float64]
 GRID = 0.01  # s, of courses to look at
@@ -36,6 +36,7 @@ OVERTAKES = 6.0  # in ln evidence over an adequate single: pairs that are kept; 
 HAND_OVERS = 2  # from a winner, and from whoever overtakes it by that
 MISLED = 8.0  # of φ: a base fit that proves so far from its best has misled the effects that were judged from it
 FOUND = 0.05  # s, standard deviation of a clock that is not as the data say: 93 were 0.04 off RMS, 0.10 at most
+ASKED = 8  # contenders; more of them are not told apart
 NO_LAWS: Mapping[str, int] = MappingProxyType({})
 CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
 
@@ -268,11 +269,18 @@ def _ranked(state: State) -> list[str]:
     return sorted(state.fits, key=lambda n: -state.fits[n].log_evidence)
 
 
-def promising(state: State, most: int = 6, laws: Mapping[str, int] = NO_LAWS) -> list[str]:
-    """Effects and laws that might be named, or come close to it, and whose fit leaves no more than noise."""
+def promising(state: State) -> list[str]:
+    """Effects that might be named by the fitted landings alone, and whose fit leaves no more than noise."""
+    found, _ = judged(state, {})
+    adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
+    return [n for n in credible(found, _singles(state, NO_LAWS)) if n in adequate]
+
+
+def to_be_asked(state: State, laws: Mapping[str, int] = NO_LAWS) -> list[str]:
+    """Effects and laws that the held-out landings are to be asked about: those that contend, and whose fit leaves no more than noise."""
     found, _ = judged(state, {}, laws)
     adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
-    return [n for n in contenders(found, _singles(state, laws)) if n in adequate][:most]
+    return [n for n in contenders(found, _singles(state, laws)) if n in adequate][:ASKED]
 
 
 def _singles(state: State, laws: Mapping[str, int]) -> int:

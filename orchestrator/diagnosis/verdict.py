@@ -2,23 +2,24 @@
 
 Half of the prior belongs to nothing missing, the other half to the library in equal shares; all its pairs share a twentieth, all laws
 outside it as much. The rules are those of docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing
-missing, and a held-out landing that gains. Between answers that the fitted landings leave within CLOSE the held-out ones decide.
+missing, and a held-out landing that gains. Between answers that the fitted landings leave CLOSE the held-out ones decide.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log
 
 import numpy as np
+from scipy.special import logsumexp
 
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.outcome import Verdict
 
 SURE = 0.9
 BEATS = 5.0  # ln evidence above nothing missing
-CLOSE = 5.0  # ln probability behind the best: rivals that the held-out landings are asked about, too
+HEARD, CLOSE = 2.0, 5.0  # ln evidence over nothing missing, ln probability behind the best: of whom the held-out landings are asked
 ADEQUATE = 0.01  # p-value of a residual
 BY_CHANCE = 10.0  # ln evidence above nothing missing that noise may lend an effect; in three nulls and a decoy 1.9 at most
 LOST = 1e-3  # p-value below which nothing missing is refused by itself
@@ -72,12 +73,12 @@ def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
 
 
 def contenders(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
-    """The credible and whoever comes CLOSE to the best of them, most probable first."""
-    named, found = credible(hypotheses, singles), probabilities(hypotheses, singles)
-    if not named:
-        return ()
-    near = [n for n, p in found.items() if n != NULL.name and (n in named or p > found[named[0]] * exp(-CLOSE))]
-    return tuple(sorted(near, key=lambda n: -found[n]))
+    """Whom the held-out landings are to be asked about, most probable first: the credible, and who is HEARD and CLOSE to the best."""
+    found, named = probabilities(hypotheses, singles), credible(hypotheses, singles)
+    evidence = {h.name: h.log_evidence for h in hypotheses}
+    ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
+    heard = [n for n in ranked if evidence[n] > evidence[NULL.name] + HEARD]
+    return tuple(n for n in ranked if n in named or (n in heard and found[n] > found[heard[0]] * exp(-CLOSE)))
 
 
 def _until_sure(found: Mapping[str, float], names: Sequence[str]) -> tuple[str, ...]:
@@ -87,18 +88,22 @@ def _until_sure(found: Mapping[str, float], names: Sequence[str]) -> tuple[str, 
     return tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
 
 
-def decided(found: Mapping[str, float], rivals: Sequence[Judged]) -> dict[str, float]:
-    """Probabilities once the held-out landings have said which rival foresees them better; as they were where not all were asked.
+def informed(hypotheses: Sequence[Judged], singles: int) -> list[Judged]:
+    """The hypotheses with what the held-out landings say of the contenders in their evidence; as they were where not all were asked.
 
-    Evidence of one landing and then of another, with what the first taught as the prior, multiplies: Bayes' rule taken twice.
+    Evidence of one landing and then of another, with what the first taught as the prior, multiplies: Bayes' rule taken twice. Who was
+    HEARD but not asked keeps its distance to those who were.
     """
-    gains = [np.nan if one.holdout_gain is None else one.holdout_gain for one in rivals]
-    if len(rivals) < 2 or np.isnan(gains).any() or np.isneginf(max(gains)):
-        return dict(found)
-    weights = np.array([log(found[one.name]) + gain for one, gain in zip(rivals, gains, strict=True)])
-    shares = np.exp(weights - weights.max())
-    whole = sum(found[one.name] for one in rivals)
-    return dict(found) | {one.name: float(whole * s) for one, s in zip(rivals, shares / shares.sum(), strict=True)}
+    named, evidence = contenders(hypotheses, singles), {h.name: h.log_evidence for h in hypotheses}
+    rivals = [h for h in hypotheses if h.name in named and h.adequacy >= ADEQUATE]
+    gains = np.array([np.nan if one.holdout_gain is None else one.holdout_gain for one in rivals])
+    if not rivals or np.isnan(gains).any():
+        return list(hypotheses)
+    before = np.array([one.log_evidence + log(prior_of(one, singles)) for one in rivals])
+    gained = {one.name: gain for one, gain in zip(rivals, gains.tolist(), strict=True)}
+    common = float(logsumexp(before + gains) - logsumexp(before))
+    rest = {h.name: common if h.log_evidence > evidence[NULL.name] + HEARD else 0.0 for h in hypotheses}
+    return [replace(h, log_evidence=h.log_evidence + gained.get(h.name, rest[h.name])) for h in hypotheses]
 
 
 @dataclass(frozen=True)
@@ -118,17 +123,15 @@ class Judgement:
 def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     """hypotheses must hold nothing missing; a law outside the library that does not stand is left out."""
     hypotheses = [h for h in hypotheses if h.stands or not h.laws]
-    found = probabilities(hypotheses, singles)
-    known = {h.name: h for h in hypotheses}
-    null, named = known[NULL.name], contenders(hypotheses, singles)
+    known, both = {h.name: h for h in hypotheses}, informed(hypotheses, singles)
+    found, null = probabilities(both, singles), known[NULL.name]
+    named = credible(both, singles) or credible(hypotheses, singles)
     if not named:
         if null.adequacy < LOST:
             return Judgement(
                 "none_of_my_effects", (), found, "nothing missing is not adequate, and no effect of the library is better by enough"
             )
         return Judgement("nothing_missing", (), found)
-    found = decided(found, [known[n] for n in named if known[n].adequacy >= ADEQUATE])
-    named = _until_sure(found, named)
     best = known[named[0]]
     standing = tuple(n for n in named if known[n].stands)
     if not standing:

@@ -63,11 +63,11 @@ def test_a_law_outside_is_one_answer_more(
     held: Any = SimpleNamespace(landings=SimpleNamespace(size=100))
     state.setup = setup
     diagnosis = Diagnosis(Outcome("nothing_missing"), setup, held, state)
-    crew: Any = None
+    crew: Any = SimpleNamespace(flown=100)
     request = Request(scenario=diagnose.Path(), measured=())
 
     law = diagnose._law_outside(request, diagnosis, crew, [named], None)
-    _, judgement = diagnose._judged(request, diagnosis, crew, [named], law, None)
+    _, judgement = diagnose._judged(request, diagnosis, crew, law, None)
     alone, beside = verdict == "none_of_my_effects", verdict == "cannot_tell"
     assert judgement.verdict == ("effects" if verdict == "effect" and len(parts_of(named)) > 1 else verdict)
     assert judgement.answers == ((named, TERM.name) if beside else (TERM.name,) if alone else ())

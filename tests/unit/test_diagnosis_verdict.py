@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrator.diagnosis.hypothesis import NULL
-from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, decided, judge, probabilities
+from orchestrator.diagnosis.verdict import OUTSIDE, TOGETHER, Judged, contenders, informed, judge, probabilities
 
 LIBRARY = 40
 FINE, POOR = 0.4, 1e-6
@@ -157,7 +157,32 @@ def test_held_out_landings_overrule_only_what_the_fitted_ones_leave_close() -> N
     assert a_before_b(54.5, 30.0) == ("effect", ("a",))
 
 
-def test_evidence_of_two_landings_multiplies_and_leaves_to_the_others_what_they_had() -> None:
-    found = decided({"a": 0.6, "b": 0.3, "c": 0.1}, [Judged("a", 0.0, FINE, 10.0), Judged("b", 0.0, FINE, 10.0 + np.log(2.0))])
-    assert found == pytest.approx({"a": 0.45, "b": 0.45, "c": 0.1})
+@pytest.mark.parametrize(
+    ("evidence", "gain", "verdict"),
+    [
+        (5.5, None, "nothing_missing"),
+        (5.5, 4.0, "effect"),  # what one landing hints at and the other confirms
+        (5.5, 0.1, "nothing_missing"),
+        (5.5, -4.0, "nothing_missing"),
+        (1.9, 20.0, "nothing_missing"),  # not HEARD: nobody would have asked
+        (9.0, -8.0, "nothing_missing"),
+        (12.0, -10.0, "none_of_my_effects"),  # more than noise lends
+    ],
+)
+def test_a_weak_effect_is_named_where_both_landings_together_ask_for_it(evidence: float, gain: float | None, verdict: str) -> None:
+    assert named(null(FINE), Judged("a", evidence, FINE, gain, None if gain is None else FINE))[0] == verdict
 
+
+def test_evidence_of_two_landings_multiplies_and_leaves_those_who_were_not_asked_where_they_were() -> None:
+    asked = [Judged("a", 9.0, FINE, 10.0, FINE), Judged("b", 8.0, FINE, 12.0, FINE)]
+    rest = [null(FINE), Judged("c", 3.0, FINE), Judged("d", -2.0, FINE)]
+    found = {h.name: h.log_evidence for h in informed([*asked, *rest], LIBRARY)}
+    common = np.log((np.exp(19.0) + np.exp(20.0)) / (np.exp(9.0) + np.exp(8.0)))
+    assert found == pytest.approx({"a": 19.0, "b": 20.0, NULL.name: 0.0, "c": 3.0 + common, "d": -2.0})
+
+
+def test_the_held_out_landings_are_asked_of_the_credible_and_of_who_comes_close() -> None:
+    some = [null(POOR), Judged("a", 60.0, FINE), Judged("b", 55.5, FINE), Judged("c", 54.5, FINE), Judged("a + b", 61.5, FINE)]
+    assert contenders(some, LIBRARY) == ("a", "a + b", "b")
+    assert contenders([null(FINE), Judged("a", 2.5, FINE), Judged("b", 1.9, FINE)], LIBRARY) == ("a",)
+    assert contenders([null(FINE), Judged("a", 1.9, FINE)], LIBRARY) == ()
