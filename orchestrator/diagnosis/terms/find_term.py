@@ -22,7 +22,7 @@ from orchestrator.diagnosis.terms.found import OF_A_CLASS, Found, Rival
 from orchestrator.diagnosis.terms.linear import port_evidence, whitened
 from orchestrator.diagnosis.terms.regress import Regression, best_of_library, regressed
 from orchestrator.diagnosis.terms.stability import stability
-from orchestrator.diagnosis.verdict import ADEQUATE, BEATS
+from orchestrator.diagnosis.verdict import ADEQUATE, BEATS, HEARD
 
 SECONDS = 12  # terms that are tried beside the first
 COULD = 15.0, 0.25  # of ln evidence, or of what is to be beaten: a term that takes over from the best and promises so much less is no rival
@@ -57,8 +57,11 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
 
 
 def _taking_over(search: Search, best: Fit, terms: Sequence[Hypothesis], beat: float) -> dict[str, Fit]:
-    """Terms that do nearly as well in the place of the best fit's effect: by the slopes there, and fitted from where they lead."""
-    least = best.log_evidence - max(COULD[0], COULD[1] * beat)
+    """Terms that do nearly as well in the place of the best fit's effect: by the slopes there, and fitted from where they lead.
+
+    None that does no better than nothing missing, which is `beat` behind the best.
+    """
+    least = best.log_evidence - min(max(COULD[0], COULD[1] * beat), beat - HEARD)
     promised = offers(search, best, terms)
     near = [h for h in terms if promised[h.name][0] > least]
     return {name: fit for name, fit in begun_there(search, best, near, promised).items() if fit.log_evidence > least}
