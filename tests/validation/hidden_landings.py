@@ -35,6 +35,8 @@ class Case:
     names: tuple[str, ...] = ()
     one_recorder: bool = True
     """Without, each series has instants of its own, as in the sealed cases."""
+    held_out: bool = True
+    """Whether the diagnosis gets the second landing."""
 
 
 def framed(scene: Scene) -> Scene:

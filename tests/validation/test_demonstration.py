@@ -17,7 +17,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.together]
 TWINS = ("telemetry_lowpass", "clock_offset")
 CASES = {  # the dearest first
     "a law outside the library": Case("outside_yaw_angle", 300.0, 14, "none_of_my_effects"),
-    "one of two that look alike": Case("clock_offset", 30.0, 18, "cannot_tell", TWINS, one_recorder=False),
+    "one of two that look alike": Case("clock_offset", 30.0, 18, "cannot_tell", TWINS, one_recorder=False, held_out=False),
+    "the same, told apart by a second landing": Case("clock_offset", 30.0, 18, "effect", TWINS[1:], one_recorder=False),
     "the other of the two, where noise misleads": Case("telemetry_lowpass", 30.0, 15, "cannot_tell", TWINS, one_recorder=False),
     "a force in the soil": Case("soil_damping", 400.0, 11, "effect", ("soil_damping",)),
     "a sensor's axes": Case("gyro_cross_axis", 150.0, 12, "effect", ("gyro_cross_axis",)),
@@ -38,13 +39,14 @@ def diagnoses(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
                 continue
             folder = tmp_path_factory.mktemp(case.effect or "nothing")
             write(vehicle, case, folder)
-            begun[what] = pool.submit(diagnosed, folder)
+            begun[what] = pool.submit(diagnosed, folder, case)
         yield begun
 
 
-def diagnosed(folder: Path) -> Diagnosis:
+def diagnosed(folder: Path, case: Case) -> Diagnosis:
+    held = ("--holdout", folder / "holdout") if case.held_out else ()
     done = orchestrator(
-        "diagnose", "apollo11_zupp", "--measured", folder / "fit", "--holdout", folder / "holdout", "--out", folder / "out",
+        "diagnose", "apollo11_zupp", "--measured", folder / "fit", *held, "--out", folder / "out",
         "--verdict-only", "--workers", 1, "--budget", BUDGET, limit=7200.0,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -56,10 +58,12 @@ MISSED = {
     " χ² 859.5 of 920 against 871.2, 4.0 ahead in ln evidence; without noise the filter is 3 better in φ: no twin by its clean data",
 }
 """Cases that a search was seen to get wrong, with what it said; not in CI, ten minutes of a core each."""
+LONG = ("the same, told apart by a second landing",)
 
 
 def cases() -> list[Any]:
     marks = {what: [pytest.mark.long, pytest.mark.xfail(reason=why, strict=False)] for what, why in MISSED.items()}
+    marks |= {what: [pytest.mark.long] for what in LONG}
     return [pytest.param(what, marks=marks.get(what, [])) for what in CASES]
 
 
@@ -70,7 +74,8 @@ def test_what_is_hidden_gets_its_verdict(what: str, diagnoses: dict[str, Future[
     assert found["verdict"] == case.verdict, told
     if case.verdict == "effect":
         assert tuple(effect["name"] for effect in found["effects"]) == case.names, told
-        assert found["gap"]["closure"] >= 0.8, found["gap"]
+        nothing_to_close = found["gap"]["holdout_before"] < 1.0  # σ: less than noise leaves
+        assert nothing_to_close or found["gap"]["closure"] >= 0.8, found["gap"]
     if case.verdict == "none_of_my_effects":
         assert found["term"]["port"] == "body", found["term"]["words"]
         assert found["term"]["closure"] >= 0.8, found["gap"]
