@@ -118,6 +118,12 @@ def test_what_is_in_every_pair_that_is_left_is_said_to_be_missing(tmp_path: Path
     assert "What would decide between a step under pad +Y and a step under pad -Z" in "".join(page.texts).replace("\u00a0", " ")
 
 
+@pytest.mark.parametrize(("verdict", "said"), [("effect", False), ("none_of_my_effects", False), ("cannot_tell", True)])
+def test_a_gap_that_only_a_candidate_closes_is_not_said_to_be_closed_in_the_scenario(verdict: str, said: bool, tmp_path: Path) -> None:
+    page = "".join(read(write_report(tmp_path, outcome(verdict), [])).texts).replace("\u00a0", " ")
+    assert ("93 % by the best candidate, which is not added" in page) == said
+
+
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_missing_numbers_and_odd_names_harm_no_page(verdict: str, tmp_path: Path) -> None:
     page = read(write_report(tmp_path, bare(verdict), [odd_landing(), replace(odd_landing(), kind="holdout")]))

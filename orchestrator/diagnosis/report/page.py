@@ -52,6 +52,7 @@ def _told(outcome: Outcome) -> dict[str, Any]:
         "caution": words.caution(outcome),
         "next": words.next_step(outcome),
         "command": words.command(outcome),
+        "by_whom": words.by_whom(outcome),
         "undecided": words.listed(words.undecided(outcome)),
         "gaps": _gaps(outcome),
         "windows": sorted(strength, key=lambda w: -w.sigmas) + [w for w in outcome.where if not is_known(w.sigmas)],

@@ -78,7 +78,7 @@ def _facts(outcome: Outcome, folder: Path | None) -> Table:
         if is_known(before):
             table.add_row(f"gap, {title}", f"{number(before)} → {number(after)} σ" if is_known(after) else f"{number(before)} σ")
     if is_known(gap.closure):
-        table.add_row("gap closed", percent(gap.closure))
+        table.add_row("gap closed", f"{percent(gap.closure)}{words.by_whom(outcome)}")
     if outcome.not_excited:
         table.add_row("not to be seen", Text(", ".join(words.title_of(outcome, name) for name in outcome.not_excited)))
     table.add_row("cost", f"{outcome.simulations} landings, {number(outcome.seconds)} s")

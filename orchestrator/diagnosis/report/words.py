@@ -78,6 +78,12 @@ def command(outcome: Outcome) -> str:
     return f"orchestrator diagnose {scenario}{data}{held}{own}"
 
 
+def by_whom(outcome: Outcome) -> str:
+    """Behind a closed gap: whose it is, where that is not added to the scenario."""
+    added = outcome.effects or (outcome.verdict == "none_of_my_effects" and outcome.term)
+    return "" if added else " by the best candidate, which is not added"
+
+
 def title_of(outcome: Outcome, name: str) -> str:
     """What an effect is called in words; its name where nobody says."""
     found = [effect.title for effect in outcome.effects if effect.name == name]
