@@ -28,7 +28,8 @@ from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import CONTACTS, look
 from orchestrator.diagnosis.tasks.predict import Predict
 from orchestrator.diagnosis.term_fmu import build_term_fmu
-from orchestrator.diagnosis.terms.found import as_term
+from orchestrator.diagnosis.terms.found import Found, as_term
+from orchestrator.errors import OrchestratorError
 from orchestrator.scenario.locate import find_fmu
 
 Array = NDArray[np.float64]
@@ -36,16 +37,27 @@ UNITS = {"rates": "rad/s", "attitude": "rad"}
 
 
 def present(request: Request, diagnosis: Diagnosis) -> None:
-    """diagnosis.json, report.html and, where an effect is named, revised.toml, into the request's folder."""
+    """diagnosis.json, report.html and, where an effect is named, revised.toml, into the request's folder.
+
+    Where the co-simulation fails, the search's verdict is written all the same, and the error raised then.
+    """
     outcome, setup, state = diagnosis.outcome, diagnosis.setup, diagnosis.state
     request.out.mkdir(parents=True, exist_ok=True)
     courses: list[LandingCourses] = []
+    failed: OrchestratorError | None = None
     if setup is not None and state is not None:
-        proof = _proven(request, diagnosis)
+        proof = None
+        try:
+            proof = _proven(request, diagnosis)
+        except OrchestratorError as error:
+            failed = error
+            outcome.warnings.append(f"the co-simulation has proved nothing: {error}")
         courses = _courses(request, diagnosis, proof)
     outcome.sentence = verdict_sentence(outcome)
     write_report(request.out, outcome, courses)
     outcome.write(request.out)
+    if failed is not None:
+        raise type(failed)(f"{failed} (the search's verdict is in {request.out}: {outcome.sentence})")
 
 
 def chosen(diagnosis: Diagnosis) -> str:
@@ -61,7 +73,7 @@ def chosen(diagnosis: Diagnosis) -> str:
 def _named(diagnosis: Diagnosis, name: str) -> list[Named]:
     """Effects of a hypothesis with what its own fit estimated."""
     if diagnosis.found is not None and diagnosis.setup is not None and name == diagnosis.found.name:
-        return [as_term(diagnosis.found, diagnosis.setup.addresses).named()]
+        return [as_term(one, diagnosis.setup.addresses).named() for one in diagnosis.found.both]
     found: dict[str, Candidate] = {c.name: c for c in diagnosis.outcome.candidates}
     if diagnosis.state is None or name not in found:
         return []
@@ -111,22 +123,20 @@ def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name
     setup, outcome = diagnosis.setup, diagnosis.outcome
     if setup is None:
         return
-    titles = [e.title for e in outcome.effects] or [named[0].effect.title]
+    titles = [e.title for e in outcome.effects] or [it.effect.title for it in named]
     title = f"{setup.addresses.blueprint.scenario.table.title}, with {' and '.join(it.lower() for it in titles)}"
     source = f"found by orchestrator diagnose; see {request.out / 'report.html'}"
     revised = write_revision(request.out, setup.addresses, named, title, [source], master)
     outcome.revised_scenario = str(revised)
-    if diagnosis.found is not None:
-        _keep_term(request, diagnosis, setup)
+    for found in diagnosis.found.both if diagnosis.found is not None else ():
+        _keep_term(request, found, setup)
     for k, applied in enumerate(fitted_values(setup.addresses, setup.landings, diagnosis.state.fits[name] if diagnosis.state else None)):  # type: ignore[arg-type]
         write_landing(request.out, k + 1, revised, applied.values, applied.seen, setup.names[k])
 
 
-def _keep_term(request: Request, diagnosis: Diagnosis, setup: Setup) -> None:
+def _keep_term(request: Request, found: Found, setup: Setup) -> None:
     """The found term as an entry for the library, and as an FMU of its own for any FMI tool."""
-    if diagnosis.found is None:
-        return
-    term = as_term(diagnosis.found, setup.addresses)
+    term = as_term(found, setup.addresses)
     write_effect(request.out / "found", term)
     place = term.coefficient.partition(".")[0]
     units = setup.addresses.units(place)

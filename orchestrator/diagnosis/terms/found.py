@@ -63,6 +63,11 @@ class Found:
         return self.hypothesis.name
 
     @property
+    def both(self) -> tuple[Found, ...]:
+        """It, and what stands beside it."""
+        return (self,) if self.second is None else (self, self.second)
+
+    @property
     def energy(self) -> Energy:
         return self.term.energy(self.coefficient.value)
 

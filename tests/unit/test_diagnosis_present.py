@@ -1,0 +1,63 @@
+"""What is written after the verdict, where the co-simulation cannot follow, and where two laws were found at once."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from orchestrator.blueprint import draw_up, read_scenario
+from orchestrator.diagnosis import present
+from orchestrator.diagnosis.addresses import Addresses
+from orchestrator.diagnosis.diagnose import Diagnosis, Request
+from orchestrator.diagnosis.hypothesis import joined
+from orchestrator.diagnosis.outcome import Estimate, Outcome
+from orchestrator.diagnosis.revision import write_revision
+from orchestrator.diagnosis.terms.dictionary import dictionary
+from orchestrator.diagnosis.terms.found import Found
+from orchestrator.errors import UnitError
+
+ZUPP = Path(__file__).resolve().parents[2] / "scenarios" / "apollo11_zupp.toml"
+
+
+def addresses_of(path: Path) -> Addresses:
+    return Addresses(draw_up(read_scenario(path), path))
+
+
+def test_a_verdict_is_written_also_where_the_co_simulation_fails(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def fails(*_: Any) -> None:
+        raise UnitError("revised.toml: the scenario has no unit body_term; insert a BodyTerm")
+
+    monkeypatch.setattr(present, "_proven", fails)
+    monkeypatch.setattr(present, "_courses", lambda *_: [])
+    some: Any = SimpleNamespace()
+    request, diagnosis = Request(ZUPP, (), out=tmp_path), Diagnosis(Outcome("nothing_missing"), some, None, some)
+    with pytest.raises(UnitError, match=r"insert a BodyTerm \(the search's verdict is in .*: Nothing is missing that these data"):
+        present.present(request, diagnosis)
+    kept = json.loads((tmp_path / "diagnosis.json").read_text("utf-8"))
+    assert kept["verdict"] == "nothing_missing"
+    assert "no unit body_term" in kept["warnings"][0]
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_two_laws_found_at_once_are_both_revised_kept_and_have_their_units(tmp_path: Path) -> None:
+    zupp, terms = addresses_of(ZUPP), {term.name: term for term in dictionary()}
+    torque, soil = terms["body_Tx_constant"], next(term for term in terms.values() if term.port == "soil.normal" and not term.equals)
+    hypotheses = [term.hypothesis(zupp) for term in (soil, torque)]
+    assert hypotheses[0] is not None
+    assert hypotheses[1] is not None
+    fit: Any = None
+    one, two = (Estimate(value, 10.0, unit) for value, unit in ((300.0, soil.measure), (600.0, torque.measure)))
+    second = Found(torque, two, 80.0, 0.5, True, (), {}, {}, joined(*hypotheses), fit)
+    found = Found(soil, one, 80.0, 0.5, True, (), {}, {}, joined(*hypotheses), fit, second=second)
+    setup: Any = SimpleNamespace(addresses=zupp)
+    named = present._named(Diagnosis(Outcome("none_of_my_effects"), setup, found=found), found.name)
+    revised = addresses_of(write_revision(tmp_path, zupp, named))
+    assert revised.base_value(soil.coefficient).tolist() == [300.0]
+    assert revised.base_value(torque.coefficient).tolist() == [600.0]
+    request = Request(ZUPP, (), out=tmp_path)
+    for it in found.both:
+        present._keep_term(request, it, setup)
+    assert {path.stem for path in (tmp_path / "found").glob("*.toml")} == {soil.name, torque.name}
+    assert len(list((tmp_path / "found").glob("*.fmu"))) == 2
