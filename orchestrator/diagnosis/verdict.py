@@ -19,7 +19,7 @@ from orchestrator.diagnosis.outcome import Verdict
 
 SURE = 0.9
 BEATS = 5.0  # ln evidence above nothing missing
-HEARD, CLOSE = 2.0, 5.0  # ln evidence over nothing missing, ln probability behind the best: of whom the held-out landings are asked
+HEARD, CLOSE = 1.0, 5.0  # ln evidence over nothing missing, ln probability behind the best: of whom the held-out landings are asked
 ADEQUATE = 0.01  # p-value of a residual
 BY_CHANCE = 10.0  # ln evidence above nothing missing that noise may lend an effect; in three nulls and a decoy 1.9 at most
 LOST = 1e-3  # p-value below which nothing missing is refused by itself

@@ -87,8 +87,8 @@ def test_a_law_outside_is_one_answer_more(
         (30.0, 14.0, 16.0, False),  # 15 behind: not fitted
         (30.0, 16.0, 14.0, False),
         (9.0, 3.0, 3.0, True),
-        (9.0, 1.0, 3.0, False),  # no better than nothing missing
-        (9.0, 3.0, 1.0, False),
+        (9.0, 0.9, 3.0, False),  # no better than nothing missing
+        (9.0, 3.0, 0.9, False),
         (200.0, 155.0, 155.0, True),  # a quarter behind
         (200.0, 145.0, 155.0, False),
     ],

@@ -164,7 +164,7 @@ def test_held_out_landings_overrule_only_what_the_fitted_ones_leave_close() -> N
         (5.5, 4.0, "effect"),  # what one landing hints at and the other confirms
         (5.5, 0.1, "nothing_missing"),
         (5.5, -4.0, "nothing_missing"),
-        (1.9, 20.0, "nothing_missing"),  # not HEARD: nobody would have asked
+        (0.9, 20.0, "nothing_missing"),  # not HEARD: nobody would have asked
         (9.0, -8.0, "nothing_missing"),
         (12.0, -10.0, "none_of_my_effects"),  # more than noise lends
     ],
@@ -184,5 +184,5 @@ def test_evidence_of_two_landings_multiplies_and_leaves_those_who_were_not_asked
 def test_the_held_out_landings_are_asked_of_the_credible_and_of_who_comes_close() -> None:
     some = [null(POOR), Judged("a", 60.0, FINE), Judged("b", 55.5, FINE), Judged("c", 54.5, FINE), Judged("a + b", 61.5, FINE)]
     assert contenders(some, LIBRARY) == ("a", "a + b", "b")
-    assert contenders([null(FINE), Judged("a", 2.5, FINE), Judged("b", 1.9, FINE)], LIBRARY) == ("a",)
-    assert contenders([null(FINE), Judged("a", 1.9, FINE)], LIBRARY) == ()
+    assert contenders([null(FINE), Judged("a", 2.5, FINE), Judged("b", 0.9, FINE)], LIBRARY) == ("a",)
+    assert contenders([null(FINE), Judged("a", 0.9, FINE)], LIBRARY) == ()
