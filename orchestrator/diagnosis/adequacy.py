@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import binom
 from scipy.stats import chi2 as chi_square
 from scipy.stats import f as variance_ratio
 
@@ -76,24 +77,29 @@ def _understated(landings: Landings) -> Array:
 
 
 def _whiteness(fit: Fit, landings: Landings) -> float:
-    """Smallest Ljung-Box p-value over the channels, times their number."""
+    """Smallest p-value of `portmanteau` over the channels, times their number."""
     found = []
     for observation, part in zip(landings.observations, landings.parts, strict=True):
         rows = fit.residual[part]
         found += [
-            ljung_box(rows[place])
+            portmanteau(rows[place])
             for track, place in zip(observation.tracks, observation.places, strict=False)
             if len(track.times) > 4 * LAGS
         ]
     return min(1.0, len(found) * min(found)) if found else 1.0
 
 
-def ljung_box(residual: Array, lags: int = LAGS) -> float:
-    """p-value of no autocorrelation up to `lags` (Ljung and Box 1978)."""
+def portmanteau(residual: Array, lags: int = LAGS) -> float:
+    """p-value of no positive autocorrelation up to `lags`: the sum of Ljung and Box (1978) over the positive ones.
+
+    What a missing effect leaves is smooth from sample to sample; what alternates, a fit's own freedom makes, or chance. A sum of squares
+    of those of independent normal numbers that are positive is chi-square of as many freedoms as are positive, a binomial number.
+    """
     n = len(residual)
     r = residual - residual.mean()
     variance = float(r @ r)
     if variance == 0.0:
         return 1.0
-    q = n * (n + 2.0) * sum((float(r[k:] @ r[:-k]) / variance) ** 2 / (n - k) for k in range(1, lags + 1))
-    return float(chi_square.sf(q, lags))
+    q = n * (n + 2.0) * sum(max(float(r[k:] @ r[:-k]) / variance, 0.0) ** 2 / (n - k) for k in range(1, lags + 1))
+    positive = np.arange(1, lags + 1)
+    return 1.0 if q == 0.0 else float(binom.pmf(positive, lags, 0.5) @ chi_square.sf(q, positive))

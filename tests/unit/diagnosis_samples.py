@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.landing import Course
@@ -118,3 +119,11 @@ def ringing_landing(changed: Mapping[str, float], seed: int = 0, sigma: float = 
     """A ringing landing in which some variables are not what the base says."""
     times = np.arange(0.02, STOP, 0.02)
     return one_landing(tracks(Ringing(), RINGING | dict(changed), ("x", "y"), times, sigma, seed), (), RINGING)
+
+
+def ljung_box(residual: Array, lags: int = 5) -> float:
+    """p-value of no autocorrelation up to `lags` (Ljung and Box 1978)."""
+    n = len(residual)
+    r = residual - residual.mean()
+    q = n * (n + 2.0) * sum(float(r[k:] @ r[:-k] / (r @ r)) ** 2 / (n - k) for k in range(1, lags + 1))
+    return float(chi2.sf(q, lags))

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from diagnosis_samples import ljung_box
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
-from orchestrator.diagnosis.adequacy import ljung_box
 from orchestrator.diagnosis.noise import Noise, Stretch, Whitening, noise_of
 
 Array = NDArray[np.float64]

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnosis_samples import RINGING, Ringing, coordinate, ringing_landing
+from diagnosis_samples import RINGING, Ringing, coordinate, ljung_box, ringing_landing
 from scipy.stats import kstest
 
-from orchestrator.diagnosis.adequacy import adequacy, ljung_box
+from orchestrator.diagnosis.adequacy import adequacy, portmanteau
 from orchestrator.diagnosis.fit import Fit, seen_from
 from orchestrator.diagnosis.locate import located
 from orchestrator.diagnosis.observation import Observation
@@ -33,7 +33,32 @@ def test_a_white_residual_is_adequate_as_often_as_its_p_value_says() -> None:
     assert kstest([it.size for it in found], "uniform").pvalue > 1e-3
     assert np.mean([it.p < 0.01 for it in found]) < 0.03
     assert np.mean([it.p < 0.1 for it in found]) < 0.15
-    assert kstest([ljung_box(random.standard_normal(100)) for _ in range(400)], "uniform").pvalue > 1e-3
+
+
+def smooth(random: np.random.Generator, n: int, rho: float) -> np.ndarray:
+    """An autoregression."""
+    found = random.standard_normal(n)
+    for i in range(1, n):
+        found[i] = rho * found[i - 1] + np.sqrt(1.0 - rho**2) * found[i]
+    return found
+
+
+@pytest.mark.parametrize("n", [50, 165])
+def test_white_noise_is_refused_no_oftener_than_its_p_value_says(n: int) -> None:
+    """4,000 draws, three standard deviations: 0.0147 for 0.01. Autocorrelations of few samples are a little negative."""
+    random = np.random.default_rng(2)
+    p = np.array([portmanteau(random.standard_normal(n)) for _ in range(4000)])
+    assert np.mean(p < 0.01) < 0.01 + 3.0 * np.sqrt(0.01 / 4000)
+    assert np.mean(p < 0.1) < 0.1 + 3.0 * np.sqrt(0.1 / 4000)
+    assert np.mean(p < 0.1) > 0.04
+
+
+def test_what_is_smooth_is_refused_oftener_than_by_both_signs_and_what_alternates_is_not() -> None:
+    random = np.random.default_rng(3)
+    left = [smooth(random, 83, 0.3) for _ in range(600)]
+    assert np.mean([portmanteau(it) < 0.01 for it in left]) > np.mean([ljung_box(it) < 0.01 for it in left]) + 0.03
+    assert np.mean([portmanteau(smooth(random, 83, -0.3)) < 0.01 for _ in range(600)]) < 0.02
+    assert portmanteau(np.zeros(20)) == 1.0
 
 
 def test_what_a_fit_followed_is_taken_off_the_freedom() -> None:
