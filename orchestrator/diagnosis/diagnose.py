@@ -193,17 +193,19 @@ def _judged(
     state = diagnosis.state
     if state is None:
         raise ValueError("a verdict needs a search")
-    names = to_be_asked(state)
+    names, gains = to_be_asked(state), {}
     if law is not None:
         laws = {law.name: len(law.regressed)}
         adopt(state, law)
         asked = to_be_asked(state, laws)
         if law.name in asked:
-            verdicts, judgement = judged(state, _asked(diagnosis, crew, request.seed, asked, told), laws)
+            gains = _asked(diagnosis, crew, request.seed, asked, told)
+            verdicts, judgement = judged(state, gains, laws)
             if law.name in judgement.answers:
                 return verdicts, _with_law(diagnosis, judgement, law, names)
         forsake(state, law)
-    return judged(state, _asked(diagnosis, crew, request.seed, names if crew.flown < request.budget else names[:1], told))
+    wanted = names if crew.flown < request.budget else names[:1]
+    return judged(state, gains if gains.keys() >= set(wanted) else _asked(diagnosis, crew, request.seed, wanted, told))
 
 
 def _with_law(diagnosis: Diagnosis, judgement: Judgement, law: Found, names: Sequence[str]) -> Judgement:

@@ -57,7 +57,7 @@ def present(request: Request, diagnosis: Diagnosis) -> None:
     write_report(request.out, outcome, courses)
     outcome.write(request.out)
     if failed is not None:
-        raise type(failed)(f"{failed} (the search's verdict is in {request.out}: {outcome.sentence})")
+        raise type(failed)(f"{failed} (the search's verdict is in {request.out}: {outcome.sentence})") from failed
 
 
 def chosen(diagnosis: Diagnosis) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
@@ -271,16 +271,18 @@ def _ranked(state: State) -> list[str]:
 
 def promising(state: State) -> list[str]:
     """Effects that might be named by the fitted landings alone, and whose fit leaves no more than noise."""
-    found, _ = judged(state, {})
-    adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
-    return [n for n in credible(found, _singles(state, NO_LAWS)) if n in adequate]
+    return _adequate_of(credible, state, NO_LAWS)
 
 
 def to_be_asked(state: State, laws: Mapping[str, int] = NO_LAWS) -> list[str]:
     """Effects and laws that the held-out landings are to be asked about: those that contend, and whose fit leaves no more than noise."""
+    return _adequate_of(contenders, state, laws)[:ASKED]
+
+
+def _adequate_of(choose: Callable[[Sequence[Judged], int], tuple[str, ...]], state: State, laws: Mapping[str, int]) -> list[str]:
     found, _ = judged(state, {}, laws)
     adequate = {one.name for one in found if one.adequacy >= ADEQUATE}
-    return [n for n in contenders(found, _singles(state, laws)) if n in adequate][:ASKED]
+    return [n for n in choose(found, _singles(state, laws)) if n in adequate]
 
 
 def _singles(state: State, laws: Mapping[str, int]) -> int:

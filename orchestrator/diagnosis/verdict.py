@@ -2,7 +2,7 @@
 
 Half of the prior belongs to nothing missing, the other half to the library in equal shares; all its pairs share a twentieth, all laws
 outside it as much. The rules are those of docs/diagnosis.md: a name needs probability 0.9, an adequate residual, evidence 5 above nothing
-missing, and a held-out landing that gains. Between answers that the fitted landings leave CLOSE the held-out ones decide.
+missing, and a held-out landing that gains. What it gains counts as evidence, of who is HEARD and CLOSE.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SURE = 0.9
 BEATS = 5.0  # ln evidence above nothing missing
 HEARD, CLOSE = 1.0, 5.0  # ln evidence over nothing missing, ln probability behind the best: of whom the held-out landings are asked
 ADEQUATE = 0.01  # p-value of a residual
-BY_CHANCE = 10.0  # ln evidence above nothing missing that noise may lend an effect; in three nulls and a decoy 1.9 at most
+BY_CHANCE = 10.0  # ln evidence above nothing missing that noise may lend an effect; in seven nulls and decoys 1.9 at most
 LOST = 1e-3  # p-value below which nothing missing is refused by itself
 TOGETHER = 0.05  # prior of any two effects at once
 OUTSIDE = 0.05  # as much for any one law that the library does not have
@@ -69,7 +69,9 @@ def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
     ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
     if not ranked or evidence[ranked[0]] - evidence[NULL.name] < BEATS or found[NULL.name] > 1.0 - SURE:
         return ()
-    return _until_sure(found, ranked)
+    total = sum(found[n] for n in ranked)
+    held = np.cumsum([found[n] / total for n in ranked])
+    return tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
 
 
 def contenders(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
@@ -79,13 +81,6 @@ def contenders(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
     ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
     heard = [n for n in ranked if evidence[n] > evidence[NULL.name] + HEARD]
     return tuple(n for n in ranked if n in named or (n in heard and found[n] > found[heard[0]] * exp(-CLOSE)))
-
-
-def _until_sure(found: Mapping[str, float], names: Sequence[str]) -> tuple[str, ...]:
-    """Of these names from the most probable on; total: of all but nothing missing."""
-    ranked, total = sorted(names, key=lambda n: -found[n]), sum(p for n, p in found.items() if n != NULL.name)
-    held = np.cumsum([found[n] / total for n in ranked])
-    return tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
 
 
 def informed(hypotheses: Sequence[Judged], singles: int) -> list[Judged]:

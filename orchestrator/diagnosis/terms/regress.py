@@ -127,6 +127,8 @@ def regressed(regression: Regression, base: Fit, better: Fit | None, offered: Se
         if point is not None:
             regression.look_from(View(point.z, point.predicted, point.slopes), list(regression.hypotheses))
     first = begun or chosen(regression, offered)
+    if not first:
+        return None
     regression.keep(search.probed([regression.hypotheses[n] for n in first], here, "terms"))
     if not explains(base.chi2, search.landings.size):
         few = [regression.hypotheses[n] for n in first[:CLIMBING]]
