@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from operator import attrgetter
 
@@ -13,12 +13,13 @@ from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
-from orchestrator.diagnosis.search import Search, Told, UnflyableError, renoised
+from orchestrator.diagnosis.search import LEAST, Search, Told, UnflyableError, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import State, hear_noise
 from orchestrator.diagnosis.verdict import ADEQUATE
 
 STAGE = "held-out landing"
+AGAIN = 3  # climbs from other draws, while the best leaves more than noise
 
 
 def posterior_of(fit: Fit, nuisances: int) -> list[Coordinate]:
@@ -38,24 +39,52 @@ def ask_holdouts(
     search = Search(held.landings, held.nuisances, held.tolerances, crew, seed, told)
     null = search.base()
     hear_noise(held, crew, null)
-    null = renoised(held.landings, null)
-    fits: dict[str, Fit] = {}
+    fits = {NULL.name: renoised(held.landings, null)}
     known = {name: Hypothesis(name, tuple(posterior_of(state.fits[name], len(state.search.nuisances)))) for name in names}
     for name, hypothesis in known.items():
-        fit = search.fit_once(hypothesis, null, STAGE)
-        if fit is None or adequacy(fit, held.landings).p < ADEQUATE:
-            fit = climbed_with(held, hypothesis.coordinates, crew, seed, told)
-        if fit is not None:
-            null, fits[name] = exchanged(search, null, fit)
-    if len(fits) > 1:  # they decide between these names: none is to lose for its nuisances alone
-        best = min(fits, key=lambda name: fits[name].objective)
-        fits = search.back_substituted(fits, list(known.values()), [name for name in fits if name != best], best, margin=np.inf)
-    if fits:
-        hear_noise(held, crew, next(iter(fits.values())), best=True)
-    fits = {n: renoised(held.landings, fit) for n, fit in {NULL.name: null, **fits}.items()}
+        tried = [search.fit_once(hypothesis, fits[NULL.name], STAGE)]
+        if tried[0] is None or adequacy(tried[0], held.landings).p < ADEQUATE:
+            tried.append(climbed_with(held, hypothesis.coordinates, crew, seed, told))
+        flown = [fit for fit in tried if fit is not None]
+        if flown:
+            fits[NULL.name], fits[name] = exchanged(search, fits[NULL.name], min(flown, key=attrgetter("objective")))
+    if len(fits) > 1:
+        fits = settled(search, held, known, fits)
+        fits = climbed_again(search, held, known, fits, seed)
     evidence = fits[NULL.name].log_evidence
     gains = {n: (fit.log_evidence - evidence, adequacy(fit, held.landings).p) for n, fit in fits.items() if n != NULL.name}
     return fits, dict.fromkeys(names, (-np.inf, 0.0)) | gains
+
+
+def settled(search: Search, held: Setup, known: Mapping[str, Hypothesis], fits: dict[str, Fit]) -> dict[str, Fit]:
+    """The others tried from the best one's nuisances, since none is to lose for its own alone; then all seen by the noise that is left."""
+    best = best_of(fits)
+    rivals = [name for name in fits if name not in (NULL.name, best)]
+    if rivals:
+        fits = search.back_substituted(fits, list(known.values()), rivals, best, margin=np.inf)
+    hear_noise(held, search.crew, fits[best_of(fits)], best=True)
+    return {name: renoised(held.landings, fit) for name, fit in fits.items()}
+
+
+def climbed_again(search: Search, held: Setup, known: Mapping[str, Hypothesis], fits: dict[str, Fit], seed: int) -> dict[str, Fit]:
+    """The best effect climbed from other draws while it leaves more than noise: what is left may be a false minimum's, not the effect's.
+
+    Of plowing in another engine's landing (benchmarks/second_engine) two fits were left at φ = 480, with p = 1e-5; other draws end at 420.
+    """
+    for draws in range(1, AGAIN + 1):
+        best = best_of(fits)
+        if adequacy(fits[best], held.landings).p >= ADEQUATE:
+            break
+        fit = climbed_with(held, known[best].coordinates, search.crew, seed + draws, search.told)
+        if fit is not None and fit.objective < fits[best].objective - LEAST:
+            null, fit = exchanged(search, fits[NULL.name], fit)
+            fits = settled(search, held, known, {**fits, NULL.name: null, best: fit})
+    return fits
+
+
+def best_of(fits: Mapping[str, Fit]) -> str:
+    """The effect that fits best."""
+    return min((name for name in fits if name != NULL.name), key=lambda name: fits[name].objective)
 
 
 def climbed_with(held: Setup, own: Sequence[Coordinate], crew: Crew, seed: int, told: Told | None) -> Fit | None:

@@ -1,6 +1,6 @@
 """From one horizon to the next by draws of the posterior: they find the minimum that the fit's own place leads away from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,14 +8,15 @@ import pytest
 from diagnosis_samples import RINGING, Formula, Line, Ringing, coordinate, line, one_landing, tracks
 from numpy.typing import NDArray
 
+from orchestrator.diagnosis import held_out
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit, fitted
-from orchestrator.diagnosis.held_out import climbed_with, exchanged
-from orchestrator.diagnosis.hypothesis import Hypothesis
+from orchestrator.diagnosis.held_out import climbed_again, climbed_with, exchanged
+from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.observation import ORIGIN, Track
 from orchestrator.diagnosis.problem import Landings, Model
-from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.search import Search, Told
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.begin import Timed
 from orchestrator.diagnosis.tasks.draw import Draw
@@ -163,3 +164,26 @@ def test_on_a_held_out_landing_the_nuisances_are_fitted_anew_with_the_effect_in(
     assert found is not None
     assert found.z[0] == pytest.approx(0.0, abs=0.01)
     assert found.chi2 < 2.0 * landings.size < caught.chi2
+
+
+@pytest.mark.parametrize(("freed_by", "ends_at", "climbs"), [(2, 0.0, [1, 2]), (9, 0.7, [1, 2, 3])])
+def test_on_a_held_out_landing_the_best_is_climbed_from_other_draws_until_it_leaves_noise(
+    freed_by: int, ends_at: float, climbs: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Climbs end in the trap but for those from the draws of `freed_by`; none is made once the fit is adequate."""
+    landings, only, own = turning_landing(), (coordinate("a"),), (coordinate("idle"),)
+    trapped, free = (fit_at(landings, (*only, *own), Turning(), np.array([a, 0.0])) for a in (0.35, 0.0))
+    held = Setup(None, turning, {}, landings, ["held"], list(only), [], [])  # type: ignore[arg-type]
+    asked: list[int] = []
+
+    def climb(held: Setup, own: Sequence[Coordinate], crew: Crew, seed: int, told: Told | None) -> Fit:
+        asked.append(seed)
+        return free if seed == freed_by else trapped
+
+    monkeypatch.setattr(held_out, "climbed_with", climb)
+    monkeypatch.setattr(held_out, "hear_noise", lambda *_, best: [])
+    null = fit_at(landings, only, Turning(), np.array([0.35]))
+    search = Search(landings, only, (), Crew(turning))
+    fits = climbed_again(search, held, {"idle": Hypothesis("idle", own)}, {NULL.name: null, "idle": trapped}, 0)
+    assert asked == climbs
+    assert [fits[name].z[0] for name in (NULL.name, "idle")] == pytest.approx([ends_at, ends_at], abs=0.01)
