@@ -14,6 +14,7 @@ Answer = Literal["right", "set", "wrong set", "wrong", "abstained", "refused", "
 """right or wrong name; a set with or without the truth; none in it; "none of my effects"; "nothing missing";
 data or numbers at fault, or no diagnosis."""
 SURE = 0.9
+BESIDE = " + "
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Score:
     truth: tuple[str, ...]
     verdict: str
     named: tuple[str, ...]
-    """Names in the verdict, or those of the set where it cannot tell."""
+    """Names in the verdict; where it cannot tell, its answers, a pair written "a + b"."""
     answer: Answer
     probability: float
     """The least stated of the names; 0 without a name."""
@@ -56,6 +57,7 @@ def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None
     """closure: computed anew from the noise-free truth; without it what the diagnosis says itself."""
     said: Tree = diagnosis or {"verdict": "none given"}
     truth, named = tuple(effect["name"] for effect in key["effects"]), _named(said)
+    parts = {part for name in named for part in name.split(BESIDE)}
     effects = list(said.get("effects") or [])
     errors, pulls = _errors(key, effects)
     outside = key["kind"] == "outside"
@@ -63,7 +65,7 @@ def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None
     return Score(
         case, key["kind"], float(key["lambda"]), truth, str(said["verdict"]), named, _answer(said, key, truth, named),
         min((float(it.get("probability") or 0.0) for it in effects), default=0.0) if said["verdict"] in ("effect", "effects") else 0.0,
-        len(set(truth) & set(named)), _number(closure if closure is not None else stated), errors, pulls,
+        len(set(truth) & parts), _number(closure if closure is not None else stated), errors, pulls,
         right_port(said, key) if outside else None, right_form(said, key) if outside else None,
         _number((run or {}).get("seconds")), _number((run or {}).get("simulations", said.get("simulations"))),
         str((run or {}).get("by", "")), tuple(key.get("seed", ())), tuple(it["effect"] for it in key.get("skipped", ())),
@@ -74,7 +76,8 @@ def _named(said: Tree) -> tuple[str, ...]:
     if said["verdict"] in ("effect", "effects"):
         return tuple(it["name"] for it in said.get("effects") or [])
     if said["verdict"] == "cannot_tell":
-        return tuple((said.get("cannot_tell") or {}).get("names") or [])
+        told = said.get("cannot_tell") or {}
+        return tuple(told.get("answers") or told.get("names") or [])
     return ()
 
 
@@ -92,11 +95,10 @@ def _answer(said: Tree, key: Tree, truth: Sequence[str], named: Sequence[str]) -
 
 
 def _answer_set(truth: Sequence[str], named: Sequence[str]) -> Answer:
-    """A set may hold pairs, written "a + b"."""
+    """Right where one of its answers, which may be a pair, is the whole truth."""
     if not named:
         return "abstained"
-    whole = any(set(name.split(" + ")) == set(truth) for name in named)
-    return "set" if whole or (truth and set(truth) <= set(named)) else "wrong set"
+    return "set" if any(set(name.split(BESIDE)) == set(truth) for name in named) else "wrong set"
 
 
 def _errors(key: Tree, effects: Sequence[Tree]) -> tuple[dict[str, float], dict[str, float]]:

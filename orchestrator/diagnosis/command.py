@@ -28,7 +28,7 @@ def diagnose(
     workers: Annotated[int, typer.Option(help="Processes; 0: one a core.")] = 0,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
     verdict_only: Annotated[
-        bool, typer.Option("--verdict-only", help="Leave out the co-simulation's proof and the report's figures.")
+        bool, typer.Option("--verdict-only", help="diagnosis.json alone: no proof by co-simulation, no report.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
 ) -> None:
@@ -61,7 +61,7 @@ def diagnose(
         typer.echo(f"interrupted: {folder}: what has been flown is kept; the same command goes on from there", err=True)
         raise typer.Exit(EXIT_INTERRUPTED) from None
     if not quiet:
-        Console().print(terminal_summary(diagnosis.outcome, folder))
+        Console().print(terminal_summary(diagnosis.outcome, folder, report=not verdict_only))
     if diagnosis.outcome.verdict in EXIT:
         raise typer.Exit(EXIT[diagnosis.outcome.verdict])
 

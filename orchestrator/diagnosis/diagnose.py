@@ -20,6 +20,7 @@ from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.locate import located
 from orchestrator.diagnosis.measured import faults, read_measured
 from orchestrator.diagnosis.measured.landing import Measured
+from orchestrator.diagnosis.origin import flown_units, provenance
 from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
 from orchestrator.diagnosis.report import verdict_sentence as sentence
 from orchestrator.diagnosis.search import UnflyableError
@@ -100,7 +101,10 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
         outcome.warnings.append(f"searched through the master, with {len(setup.hypotheses)} effects: {setup.why_slow}")
     if _faulty(outcome, [*measured, *held]):
         return Diagnosis(outcome, setup, effects=effects)
-    crew = Crew(setup.make, request.workers, Store(request.out / ".work", sorted(setup.addresses.folder.glob("*.fmu"))))
+    units = flown_units(setup.addresses)
+    told_besides = {"seed": request.seed, "budget": request.budget, "set": list(request.overrides)}
+    outcome.provenance = provenance(request.scenario, [*request.measured, *request.holdout], units, told_besides)
+    crew = Crew(setup.make, request.workers, Store(request.out / ".work", units))
     try:
         return _searched(request, setup, _held_out(blueprint, held, tolerances, request.overrides), crew, outcome, effects, told, began)
     except BaseException:
@@ -275,12 +279,14 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
     outcome.not_excited = [name for name in not_excited(state) if name in diagnosis.effects]
     ports = {n: (e.port, PLACE_OF.get(e.port, e.port)) for n, e in diagnosis.effects.items()}
     close = {n: f for n, f in state.fits.items() if n in ports and f.log_evidence > null.log_evidence + 2.0}
-    outcome.where = located(null, setup.landings, close, ports)
+    several = len(setup.names) > 1
+    outcome.where = located(null, setup.landings, close, ports, setup.names if several else ())
     _fill_gap(diagnosis, best, ranked)
     _fill_nuisances(outcome, best, state)
-    for observation in setup.landings.observations:
+    for k, observation in enumerate(setup.landings.observations):
         for track, noise in zip(observation.tracks, observation.noises, strict=True):
-            outcome.noise[track.channel] = {"stated": track.sigma, "used": noise.sigma, "colour": noise.rho}
+            channel = f"{track.channel} ({k + 1})" if several else track.channel
+            outcome.noise[channel] = {"stated": track.sigma, "used": noise.sigma, "colour": noise.rho}
     if state.courses:
         outcome.events = {
             f"contact {leg}": state.courses[0].final[f"soil{k}.contact_time"] for k, leg in enumerate(("+Z", "+Y", "-Z", "-Y"), 1)

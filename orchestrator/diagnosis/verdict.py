@@ -63,7 +63,10 @@ def prior_of(one: Judged, singles: int) -> float:
 
 
 def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
-    """Effects and laws from the top until they hold SURE of what all have together; none where evidence does not ask for one."""
+    """Effects and laws from the top until they hold SURE of what all have together; none where evidence does not ask for one.
+
+    One alone must hold SURE of everything: what is left of a tenth may be nothing missing's.
+    """
     found = probabilities(hypotheses, singles)
     evidence = {h.name: h.log_evidence for h in hypotheses}
     ranked = sorted((n for n in found if n != NULL.name), key=lambda n: -found[n])
@@ -71,7 +74,8 @@ def credible(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:
         return ()
     total = sum(found[n] for n in ranked)
     held = np.cumsum([found[n] / total for n in ranked])
-    return tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
+    chosen = tuple(ranked[: int(np.searchsorted(held, SURE)) + 1])
+    return chosen if len(chosen) > 1 or found[chosen[0]] >= SURE else ()
 
 
 def contenders(hypotheses: Sequence[Judged], singles: int) -> tuple[str, ...]:

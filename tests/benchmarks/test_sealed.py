@@ -243,7 +243,10 @@ def test_pairs_are_right_together_and_in_a_set() -> None:
     both = key("two", "a", "b")
     assert scoring.scored("0", both, named("b", "a")).answer == "right"
     assert scoring.scored("0", both, named("a")).hits == 1
-    assert scoring.scored("0", both, {"verdict": "cannot_tell", "cannot_tell": {"names": ["a + c", "b + a"]}}).answer == "set"
+    for answers, answer in ((["a + c", "b + a"], "set"), (["a + c", "b + c"], "wrong set"), (["a", "b"], "wrong set")):
+        said = {"verdict": "cannot_tell", "cannot_tell": {"names": ["a", "b", "c"], "answers": answers}}
+        score = scoring.scored("0", both, said)
+        assert (score.answer, score.hits) == (answer, 2)
 
 
 def test_parameters_are_compared_in_prior_and_stated_sigma() -> None:

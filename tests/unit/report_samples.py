@@ -40,7 +40,7 @@ def outcome(verdict: str) -> Outcome:
     found.nuisances = {"soil.friction": {"value": 0.4203, "sigma": 0.0207, "pull": 3.2109}}
     found.noise = {"rates.yaw": {"stated": 0.0017, "used": 0.00213, "colour": 0.375}}
     found.checks = {
-        "twin against units": {"sigma": 0.041, "limit": 0.2, "passed": True},
+        "twin against units": {"sigma": 0.041, "limit": 0.2, "ok": True},
         "energy": False,
         "interval": 0.03,
         "words": "fine",

@@ -123,6 +123,13 @@ def test_a_bump_in_one_channel_is_found_there_and_then_and_given_to_the_port_tha
     assert all(one.channel == "x" for one in found)
 
 
+def test_of_several_landings_each_has_its_own_places_of_disagreement() -> None:
+    one = ringing_landing({"hump": 0.04})
+    both = Landings([one.observations[0], one.observations[0]], one.bases * 2, one.stop * 2)
+    found = located(base_fit(both), both, {}, {}, ["first", "second"])
+    assert {where.landing for where in found if where.from_s < 0.9 < where.to_s} == {"first", "second"}
+
+
 def test_times_are_since_first_contact_whatever_the_data_s_clock_says() -> None:
     landings = ringing_landing({"hump": 0.04})
     fit = base_fit(landings)

@@ -31,6 +31,15 @@ def test_an_effect_must_outweigh_the_whole_library_not_only_gain_five() -> None:
     assert named(null(FINE), Judged("a", 7.0, FINE)) == ("effect", ("a",))
 
 
+def test_a_name_holds_nine_tenths_of_everything_not_of_the_effects_alone() -> None:
+    """Of the effects a has 0.91; with nothing missing's 0.07 beside them 0.85."""
+    hypotheses = [null(FINE), Judged("a", 6.3, FINE), Judged("b", 4.0, FINE)]
+    found = probabilities(hypotheses, LIBRARY)
+    assert found["a"] < 0.9 < found["a"] / (found["a"] + found["b"])
+    assert named(*hypotheses) == ("nothing_missing", ())
+    assert named(null(FINE), Judged("a", 6.9, FINE), Judged("b", 4.0, FINE)) == ("effect", ("a",))
+
+
 def test_one_effect_far_ahead_of_its_rivals_is_named() -> None:
     assert named(null(POOR), Judged("a", 60.0, FINE), Judged("b", 50.0, FINE)) == ("effect", ("a",))
 
@@ -83,7 +92,7 @@ def test_pairs_that_cannot_be_told_apart_are_the_answers_their_effects_the_names
 
 
 def test_a_pair_must_explain_more_than_a_single_effect_by_enough() -> None:
-    """There are some four hundred times as many pairs as effects, a twentieth of the prior for them all: 6 in ln evidence."""
+    """There are 20 times as many pairs as effects, and a twentieth of the prior is for them all: 6 in ln evidence."""
     assert named(null(POOR), Judged("a", 60.0, FINE), Judged("a + b", 61.0, FINE)) == ("effect", ("a",))
     assert named(null(POOR), Judged("a", 60.0, FINE), Judged("a + b", 66.0, FINE)) == ("cannot_tell", ("a", "b"))
     assert named(null(POOR), Judged("a", 60.0, FINE), Judged("a + b", 70.0, FINE)) == ("effects", ("a", "b"))

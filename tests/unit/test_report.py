@@ -187,6 +187,16 @@ def test_courses_are_kept_as_csv_in_si(written: Path) -> None:
     assert [float(r["before"]) for r in rows if r["before"]] == pytest.approx(made.before.tolist(), abs=1e-9)
 
 
+def test_the_report_says_whether_a_check_passed(tmp_path: Path) -> None:
+    interval = {"channels": {}, "worst": 0.3, "halved": 3, "ok": False}
+    for ok, said in ((True, "passed"), (False, "not passed")):
+        found = outcome("effect")
+        found.checks = {"chi2": {"null": 900.0}, "twin": {"worst": 0.04, "ok": ok}, "interval": interval}
+        write_report(tmp_path, found, [])
+        texts = [text.strip() for text in read(tmp_path / "report.html").texts]
+        assert texts[texts.index("twin") :].index(said) < texts[texts.index("twin") :].index("interval")
+
+
 def test_checks_and_terms_are_told_with_their_deviation() -> None:
     assert flat({"coefficient": {"value": 151234.0, "sigma": 4000.0, "unit": "N.s2/m2"}}) == [
         ("coefficient", "151\u202f200 ± 4\u202f000 N·s²/m²")

@@ -78,8 +78,8 @@ def _check(name: str, value: Any) -> tuple[str, str, bool | None]:
     if isinstance(value, bool):
         return title, "", value
     if isinstance(value, Mapping):
-        passed = value.get("passed")
-        rest = {key: item for key, item in value.items() if key != "passed"}
+        passed = value.get("ok")
+        rest = {key: item for key, item in value.items() if key != "ok"}
         return title, in_words(rest), passed if isinstance(passed, bool) else None
     return title, in_words(value), None
 

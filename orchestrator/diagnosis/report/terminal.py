@@ -20,8 +20,8 @@ from orchestrator.diagnosis.report.template import is_known
 ROWS = 5
 
 
-def terminal_summary(outcome: Outcome, folder: Path | None = None) -> RenderableType:
-    """The verdict on one screen, for `rich.print`: sentence, rivals, gap, where, files."""
+def terminal_summary(outcome: Outcome, folder: Path | None = None, report: bool = True) -> RenderableType:
+    """The verdict on one screen, for `rich.print`: sentence, rivals, gap, where, files. report: whether the folder holds one."""
     colour = "red" if outcome.verdict in EXIT else "yellow" if outcome.verdict in ("cannot_tell", "none_of_my_effects") else "green"
     parts: list[RenderableType] = [
         Text(words.verdict_sentence(outcome), style=f"bold {colour}"),
@@ -32,7 +32,8 @@ def terminal_summary(outcome: Outcome, folder: Path | None = None) -> Renderable
         parts += [_rivals(outcome), Text()]
     if outcome.where:
         parts += [_where(outcome), Text()]
-    parts.append(_facts(outcome, folder))
+    found = "report.html, diagnosis.json, figures, courses" if report else "diagnosis.json"
+    parts.append(_facts(outcome, f"{folder / found}" if folder is not None else ""))
     parts += [Text(line, style="yellow") for line in outcome.warnings]
     parts += [
         Text(f"{words.next_step(outcome)}"),
@@ -69,7 +70,7 @@ def _where(outcome: Outcome) -> Table:
     return table
 
 
-def _facts(outcome: Outcome, folder: Path | None) -> Table:
+def _facts(outcome: Outcome, files: str) -> Table:
     table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
@@ -84,8 +85,8 @@ def _facts(outcome: Outcome, folder: Path | None) -> Table:
     table.add_row("cost", f"{outcome.simulations} landings, {number(outcome.seconds)} s")
     if outcome.revised_scenario:
         table.add_row("revised scenario", Text(outcome.revised_scenario))
-    if folder is not None:
-        table.add_row("files", Text(f"{folder / 'report.html'}, diagnosis.json, figures, courses"))
+    if files:
+        table.add_row("files", Text(files))
     return table
 
 

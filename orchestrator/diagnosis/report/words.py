@@ -54,12 +54,14 @@ def caution(outcome: Outcome) -> str:
 def next_step(outcome: Outcome) -> str:
     """What to do now, a sentence before the command (or alone)."""
     another = "or" if outcome.holdout else "give another landing as --holdout, or"
+    law = "the term below" if outcome.term else "the law that you suspect"
+    own = f"Write {law} as an effect into a folder of your own, and search again:"
     return {
         "effect": "Run the revised scenario:",
         "effects": "Run the revised scenario:",
         "nothing_missing": "Nothing to change. To see what a landing like this could show at all:",
         "cannot_tell": f"Measure what would decide (below), {another} ask which sensor would help:",
-        "none_of_my_effects": "Write an effect for the term below into a folder of your own and search again:",
+        "none_of_my_effects": "Run the scenario with the term below (in found/ it is an effect):" if outcome.revised_scenario else own,
         "numerics": "Make the interval and the tolerance of the scenario smaller, then diagnose again:",
         "data_fault": "Mark or repair the faulty samples, then diagnose again:",
     }[outcome.verdict]
