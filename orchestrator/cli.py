@@ -54,7 +54,7 @@ Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no table.")]
 @app.command()
 def run(
     scenario: ScenarioName,
-    out: Annotated[Path | None, typer.Option(help="Folder for the results [default: results/SCENARIO].")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the results (default: results/SCENARIO).")] = None,
     overrides: Overrides = None,
     stop_time: Annotated[float | None, typer.Option(help="s; instead of the scenario's.")] = None,
     tolerance: Annotated[float | None, typer.Option(help="m; error allowed per step, instead of the scenario's.")] = None,

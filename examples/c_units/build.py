@@ -4,8 +4,8 @@
     Soil2.fmu              regolith without rollback (canGetAndSetFMUstate is false)
     Sensor3.fmu            rate gyro in degrees a second, FMI 3.0
 
-Takes a C compiler (gcc, or what CC names) and FMI's headers, which come with FMPy. A unit of your own: a table in tables.py, a C file
-with unit_start and unit_step (unit.h), and a line in UNITS.
+Takes a C compiler (gcc, what CC names, or `pip install ziglang`) and FMI's headers, which come with FMPy. A unit of your own: a table in
+tables.py, a C file with unit_start and unit_step (unit.h), and a line in UNITS.
 """
 
 import argparse

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import fmpy
@@ -13,11 +14,14 @@ import fmpy
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 
 
-def compiler() -> str:
+def compiler() -> list[str]:
+    """What CC names, gcc or cc; on a machine without any the one that the package ziglang brings."""
     found = shutil.which(os.environ.get("CC", "gcc")) or shutil.which("cc")
-    if found is None:
-        sys.exit("error: no C compiler: gcc is not on the PATH; install it (apt-get install gcc libc6-dev) or name yours in CC")
-    return found
+    if found is not None:
+        return [found]
+    if find_spec("ziglang") is None:
+        sys.exit("error: no C compiler: gcc is not on the PATH; pip install ziglang brings one, or name yours in CC")
+    return [sys.executable, "-m", "ziglang", "cc", "-fno-sanitize=undefined"]
 
 
 def compile_library(library: Path, sources: list[Path], fmi: int, flags: list[str] | None = None) -> None:
@@ -26,7 +30,7 @@ def compile_library(library: Path, sources: list[Path], fmi: int, flags: list[st
     weak = '__attribute__((weak)) {} {}(void) {{ return {}; }}\n'
     rest = library.with_name("rest.c")
     rest.write_text("".join(weak.format("void*", n, 0) if "Instantiate" in n else weak.format("int", n, 3) for n in declared))
-    command = [compiler(), "-shared", "-fPIC", "-O2", "-w", *(flags or []), f"-I{HEADERS}", "-o", str(library)]
+    command = [*compiler(), "-shared", "-fPIC", "-O2", "-w", *(flags or []), f"-I{HEADERS}", "-o", str(library)]
     subprocess.run([*command, *map(str, sources), str(rest), "-lm"], check=True)
 
 

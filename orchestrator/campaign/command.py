@@ -17,7 +17,7 @@ from orchestrator.scenario.locate import find_campaign
 
 def campaign(
     campaign: Annotated[str, typer.Argument(help="A file, the bare name of one in scenarios/campaigns, or the folder of one begun.")],
-    out: Annotated[Path | None, typer.Option(help="Folder for the landings [default: results/CAMPAIGN].")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the landings (default: results/CAMPAIGN).")] = None,
     scheduler: Annotated[str | None, typer.Option(help="Address of a dask scheduler; without it, processes on this machine.")] = None,
     workers: Annotated[int, typer.Option(help="Processes on this machine; 0: one a core.")] = 0,
     only: Annotated[int | None, typer.Option(help="Fly this landing (index) alone, and compare it with the one that is kept.")] = None,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def sensitivity(
     folder: Annotated[Path, typer.Argument(help='Folder of a campaign with design = "saltelli", finished or not.')],
-    output: Annotated[list[str] | None, typer.Option(help="An output, a column of its rows [default: margins and strokes].")] = None,
+    output: Annotated[list[str] | None, typer.Option(help="An output, a column of its rows (default: margins and strokes).")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No tables.")] = False,
 ) -> None:
     """Say which inputs drive an output: Sobol indices with their bands, as a table, a picture and data."""

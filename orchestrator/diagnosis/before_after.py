@@ -63,7 +63,8 @@ def _of_landing(proof: Proof, landing: Observed) -> Iterator[Track]:
         yield Track(landing.name, track.channel, track.times, track.readings, before[place], after[place], noise.sigma)
     for reading, place in zip(observation.readings, observation.places[len(observation.tracks) :], strict=True):
         data = np.array([np.nan if reading.interval else reading.value])
-        yield Track(landing.name, reading.name, np.zeros(0), data, before[place], after[place], reading.sigma)
+        sigma = np.nan if reading.interval else reading.sigma
+        yield Track(landing.name, reading.name, np.zeros(0), data, before[place], after[place], sigma)
 
 
 def _rows(track: Track) -> Iterator[tuple[object, ...]]:

@@ -22,10 +22,10 @@ def diagnose(
     measured: MeasuredFolders,
     holdout: Annotated[list[Path] | None, typer.Option(help="Landings kept out of the fit, to judge it by; may be repeated.")] = None,
     effects: Annotated[list[Path] | None, typer.Option(help="Folder of effects of your own, beside the library; may be repeated.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for the report [default: results/SCENARIO-diagnosis].")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the report (default: results/SCENARIO-diagnosis).")] = None,
     budget: Annotated[int, typer.Option(help="Landings after which only what the verdict needs is flown.")] = 20000,
-    seed: Annotated[int, typer.Option(help="Of the draws that fits start from.")] = 0,
-    workers: Annotated[int, typer.Option(help="Processes; 0: one a core.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the draws that fits start from.")] = 0,
+    workers: Annotated[int, typer.Option(min=0, help="Processes; 0: one a core.")] = 0,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
     verdict_only: Annotated[
         bool, typer.Option("--verdict-only", help="diagnosis.json alone: no proof by co-simulation, no report.")
@@ -70,9 +70,9 @@ def distinguish(
     scenario: Annotated[str, typer.Argument(help="A scenario file, or the bare name of one in scenarios/.")],
     measured: MeasuredFolders,
     effects: Annotated[list[Path] | None, typer.Option(help="Folder of effects of your own, beside the library; may be repeated.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for the report [default: results/SCENARIO-distinguish].")] = None,
-    workers: Annotated[int, typer.Option(help="Processes; 0: one a core.")] = 0,
-    seed: Annotated[int, typer.Option(help="0: at the means of the priors; another: at a draw from them.")] = 0,
+    out: Annotated[Path | None, typer.Option(help="Folder for the report (default: results/SCENARIO-distinguish).")] = None,
+    workers: Annotated[int, typer.Option(min=0, help="Processes; 0: one a core.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="0: at the means of the priors; another: at a draw from them.")] = 0,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
 ) -> None:

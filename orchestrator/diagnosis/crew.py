@@ -39,10 +39,10 @@ class Task(Protocol[Given]):
 class Store:
     """What tasks came to, by their content, in a folder; without one nothing is kept."""
 
-    def __init__(self, folder: Path | None, flown_by: Sequence[Path] = ()) -> None:
-        """flown_by: the FMUs; what others flew is not taken."""
+    def __init__(self, folder: Path | None, flown_by: Sequence[Path] = (), told: str = "") -> None:
+        """flown_by: the FMUs; told: what else landings depend on and tasks do not say. What others flew is not taken."""
         self.folder = folder
-        self._units = b"".join(hashlib.sha256(path.read_bytes()).digest() for path in flown_by)
+        self._units = b"".join(hashlib.sha256(path.read_bytes()).digest() for path in flown_by) + told.encode()
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
 

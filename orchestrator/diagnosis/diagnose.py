@@ -9,7 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
-from orchestrator.blueprint import Blueprint, draw_up, read_scenario
+from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.crew import Crew, Store
 from orchestrator.diagnosis.effects.effect import Effect
@@ -20,11 +20,11 @@ from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.locate import located
 from orchestrator.diagnosis.measured import faults, read_measured
 from orchestrator.diagnosis.measured.landing import Measured
-from orchestrator.diagnosis.origin import flown_units, provenance
+from orchestrator.diagnosis.origin import flown_otherwise, flown_units, provenance
 from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
 from orchestrator.diagnosis.report import verdict_sentence as sentence
 from orchestrator.diagnosis.search import UnflyableError
-from orchestrator.diagnosis.setup import Setup, set_up
+from orchestrator.diagnosis.setup import Setup, names_of, set_up
 from orchestrator.diagnosis.signatures import measures_between, not_excited
 from orchestrator.diagnosis.stages import State, align, judged, promising, run_search, to_be_asked, try_pairs
 from orchestrator.diagnosis.terms.find_term import adopt, find_term, forsake
@@ -94,7 +94,8 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
         holdout=[str(p) for p in request.holdout],
     )
     tolerances = beside_scenarios("tolerances.toml")
-    setup = set_up(blueprint, measured, effects, tolerances, request.overrides)
+    names = names_of([one.folder for one in (*measured, *held)])
+    setup = set_up(blueprint, measured, effects, tolerances, request.overrides, names[: len(measured)])
     outcome.titles = {name: effect.title for name, effect in effects.items()}
     outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
     if setup.why_slow:
@@ -104,19 +105,16 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
     units = flown_units(setup.addresses)
     told_besides = {"seed": request.seed, "budget": request.budget, "set": list(request.overrides)}
     outcome.provenance = provenance(request.scenario, [*request.measured, *request.holdout], units, told_besides)
-    crew = Crew(setup.make, request.workers, Store(request.out / ".work", units))
+    slow = flown_otherwise(setup.addresses, request.scenario, request.overrides) if setup.why_slow else ""
+    crew = Crew(setup.make, request.workers, Store(request.out / ".work", units, slow))
     try:
-        return _searched(request, setup, _held_out(blueprint, held, tolerances, request.overrides), crew, outcome, effects, told, began)
+        kept_out = set_up(blueprint, held, {}, tolerances, request.overrides, names[len(measured) :]) if held else None
+        return _searched(request, setup, kept_out, crew, outcome, effects, told, began)
     except BaseException:
         crew.abandon()
         raise
     finally:
         crew.close()
-
-
-def _held_out(blueprint: Blueprint, held: Sequence[Measured], tolerances: Path, overrides: Sequence[str]) -> Setup | None:
-    """The held-out landings' own set-up, without effects."""
-    return set_up(blueprint, held, {}, tolerances, overrides) if held else None
 
 
 def _searched(
@@ -314,7 +312,8 @@ def _fill_nuisances(outcome: Outcome, best: Fit, state: State) -> None:
     spread = np.sqrt(np.diag(best.covariance))
     for i, c in enumerate(state.search.nuisances):
         name = c.name if c.landing < 0 else f"{c.name} ({c.landing + 1})"
-        outcome.nuisances[name] = {"value": c.value(float(best.z[i])), "sigma": c.sigma * float(spread[i]), "pull": float(best.z[i])}
+        value, sigma = c.value(float(best.z[i])), c.sigma * float(spread[i])
+        outcome.nuisances[name] = {"value": value, "sigma": sigma, "prior_sigma": c.sigma, "pull": float(best.z[i])}
 
 
 def _candidate(diagnosis: Diagnosis, one: Judged, judgement: Judgement) -> Candidate:

@@ -15,8 +15,7 @@ from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.landing import RATES, SPIN, TELEMETRY, Course
 from orchestrator.diagnosis.observation import of_units
-from orchestrator.diagnosis.overlay import overlay
-from orchestrator.diagnosis.places import PLACES
+from orchestrator.diagnosis.overlay import overlay, slot_of_unit
 from orchestrator.diagnosis.recorded import cosimulation_column
 from orchestrator.errors import OrchestratorError, UnitError
 from orchestrator.loaded_units import LoadedUnits
@@ -75,18 +74,13 @@ class CoSimulation:
     ) -> Blueprint:
         """The scenario with these values, checked again."""
         own = of_units(values)
-        slots = {name: float(np.asarray(value).ravel()[0]) for name, value in own.items() if self._is_slot(name)}
+        slots = {name: float(np.asarray(value).ravel()[0]) for name, value in own.items() if slot_of_unit(self.addresses, name) is not None}
         by_address = {name: value for name, value in own.items() if name not in slots}
         tree = merge(overlay(self.addresses, by_address, inserts), settings or {})
         table = self.addresses.blueprint.scenario.table
         if stop is not None and table.start is not None:
             tree = merge(tree, {"stop_time": table.start_time + stop})
         return with_values(draw_up(read_scenario(self.path, self.overrides, tree), self.path), slots)
-
-    def _is_slot(self, name: str) -> bool:
-        """A unit's name that is no place's: where they are the same, both mean the same number."""
-        unit = name.partition(".")[0]
-        return unit in self.addresses.blueprint.interfaces and unit not in PLACES
 
     def close(self) -> None:
         self.units.close()

@@ -21,6 +21,14 @@ def flown_units(addresses: Addresses) -> list[Path]:
     return sorted({path.resolve() for path in (*addresses.folder.glob("*.fmu"), *own)})
 
 
+def flown_otherwise(addresses: Addresses, scenario: Path, overrides: Sequence[str]) -> str:
+    """All that the master is told of a scenario beyond its parameters' numbers: settings, connections, texts and the files they name."""
+    texts = [value for values in addresses.blueprint.values for value in values.values() if isinstance(value, str)]
+    files = [path for text in texts for path in (Path(text), scenario.parent / text) if text and path.is_file()]
+    said = "\n".join([scenario_text(read_table(scenario)), *overrides, *texts])
+    return _hash(said.encode(), *(path.read_bytes() for path in files))
+
+
 def provenance(scenario: Path, data: Sequence[Path], units: Sequence[Path], settings: Mapping[str, Any]) -> dict[str, Any]:
     """Of the scenario with all it extends. data: folders of measured data; settings: what the command was told besides."""
     return {

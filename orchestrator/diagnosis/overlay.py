@@ -6,19 +6,23 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import tomli_w
 from numpy.typing import ArrayLike
 
+from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses, Slot
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.places import PLACES
+from orchestrator.diagnosis.starts import number_of
 from orchestrator.errors import AddressError
 from orchestrator.master.slave import Kind, Value, stem
 from orchestrator.scenario.expand import instances
 from orchestrator.scenario.read import Tree, merge
 
+NO_SLOTS: Mapping[Slot, float] = MappingProxyType({})
 Instance = tuple[str, str] | None
 """Which key of [each] a unit is expanded by, and which instance it is."""
 
@@ -34,9 +38,35 @@ class Change:
     why: str = ""
 
 
-def overlay(addresses: Addresses, values: Mapping[str, ArrayLike], inserts: Sequence[Insert] = ()) -> Tree:
-    """What to merge over the base scenario (`extends`, or `read_scenario`'s changes). `clock` is no unit's and is passed over."""
-    numbers: dict[Slot, float] = {}
+def slot_of_unit(addresses: Addresses, name: str) -> Slot | None:
+    """Of a "unit.variable", as a search through the master has them; None for an address, as of a unit that is called as its place."""
+    unit, _, variable = name.partition(".")
+    return Slot(unit, variable) if unit in addresses.blueprint.interfaces and unit not in PLACES else None
+
+
+def overridden(addresses: Addresses) -> dict[Slot, float]:
+    """The numbers that the command line has changed in the scenario's file."""
+    path = addresses.blueprint.path
+    if path is None:
+        return {}
+    plain = draw_up(read_scenario(path), path)
+    pairs = zip(addresses.blueprint.interfaces, addresses.blueprint.values, plain.values, strict=True)
+    return {
+        Slot(unit, name): number_of(value)
+        for unit, now, before in pairs
+        for name, value in now.items()
+        if value != before.get(name) and not isinstance(value, str)
+    }
+
+
+def overlay(
+    addresses: Addresses, values: Mapping[str, ArrayLike], inserts: Sequence[Insert] = (), besides: Mapping[Slot, float] = NO_SLOTS
+) -> Tree:
+    """What to merge over the base scenario (`extends`, or `read_scenario`'s changes). `clock` is no unit's and is passed over.
+
+    besides: numbers to be set where no value says otherwise
+    """
+    numbers = dict(besides)
     for address, value in values.items():
         numbers |= _numbers(addresses, address, value)
     added = [insert for insert in inserts if not _is_there(addresses, insert)]
@@ -63,15 +93,16 @@ def write_overlay(
     title: str = "",
     remarks: Iterable[str] = (),
     tables: Tree | None = None,
+    besides: Mapping[Slot, float] = NO_SLOTS,
 ) -> Path:
     """The overlay as a TOML file beside any folder: `extends` the base scenario, and says of every change what, how sure and why.
 
-    tables: what else it sets, by table: `results`, `master`.
+    tables: what else it sets, by table: `results`, `master`;  besides: numbers without a word of their own
     """
     base = addresses.blueprint.path
     if base is None:
         raise AddressError(f"{addresses.where}: has no file that an overlay could extend; save the scenario first")
-    tree = overlay(addresses, {change.address: change.value for change in changes}, inserts)
+    tree = overlay(addresses, {change.address: change.value for change in changes}, inserts, besides)
     folder = path.parent.resolve()
     head: Tree = {"title": title or f"{addresses.blueprint.scenario.table.title}, revised", "extends": _relative(base, folder)}
     head["fmus"] = _relative(addresses.folder, folder)
@@ -106,6 +137,9 @@ def _relative(path: Path, folder: Path) -> str:
 def _numbers(addresses: Addresses, address: str, value: ArrayLike) -> dict[Slot, float]:
     """A number for each slot: from one for all, one a component, or one a slot."""
     given = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
+    own = slot_of_unit(addresses, address)
+    if own is not None:
+        return {own: float(given[0])}
     groups, slots = addresses.groups(address), addresses.resolve(address)
     if len(given) == 1 and len(groups) <= 1:
         return dict.fromkeys(slots, float(given[0]))

@@ -17,12 +17,14 @@ from orchestrator.diagnosis.found_term import write_effect
 from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.landing import Course
 from orchestrator.diagnosis.moves import Named
-from orchestrator.diagnosis.observation import Observation, sampled
+from orchestrator.diagnosis.observation import ORIGIN, SEEN, Observation, sampled
 from orchestrator.diagnosis.outcome import Candidate
 from orchestrator.diagnosis.places import PLACES
+from orchestrator.diagnosis.problem import Model, Nobody
 from orchestrator.diagnosis.proof import NULL as BEFORE
 from orchestrator.diagnosis.proof import WINNER, Observed, Proof, prove
 from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses, RestValue, verdict_sentence, write_report
+from orchestrator.diagnosis.report.words import unit_of
 from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import CONTACTS, look
@@ -33,7 +35,6 @@ from orchestrator.errors import OrchestratorError
 from orchestrator.scenario.locate import find_fmu
 
 Array = NDArray[np.float64]
-UNITS = {"rates": "rad/s", "attitude": "rad"}
 
 
 def present(request: Request, diagnosis: Diagnosis) -> None:
@@ -43,6 +44,7 @@ def present(request: Request, diagnosis: Diagnosis) -> None:
     """
     outcome, setup, state = diagnosis.outcome, diagnosis.setup, diagnosis.state
     request.out.mkdir(parents=True, exist_ok=True)
+    outcome.write(request.out)
     courses: list[LandingCourses] = []
     failed: OrchestratorError | None = None
     if setup is not None and state is not None:
@@ -117,6 +119,7 @@ def _take_over(diagnosis: Diagnosis, proof: Proof) -> None:
     if not proof.numerics.ok:
         outcome.verdict = "numerics"
         outcome.warnings += [proof.numerics.reason] if proof.numerics.reason else []
+    outcome.sentence = ""  # it had the search's verdict and gap
 
 
 def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name: str, master: Mapping[str, float]) -> None:
@@ -126,7 +129,7 @@ def _revise(request: Request, diagnosis: Diagnosis, named: Sequence[Named], name
     titles = [e.title for e in outcome.effects] or [it.effect.title for it in named]
     title = f"{setup.addresses.blueprint.scenario.table.title}, with {' and '.join(it.lower() for it in titles)}"
     source = f"found by orchestrator diagnose; see {request.out / 'report.html'}"
-    revised = write_revision(request.out, setup.addresses, named, title, [source], master)
+    revised = write_revision(request.out, setup.addresses, named, title, [source], master, request.overrides)
     outcome.revised_scenario = str(revised)
     for found in diagnosis.found.both if diagnosis.found is not None else ():
         _keep_term(request, found, setup)
@@ -200,21 +203,31 @@ def _landing(
     then = look(setup, crew, after.coordinates, after.z, k, CONTACTS) if after is not None else None
     if first is None or fitted is None:
         return None
-    sides = {it.belief: it.predicted for it in (proof.flown if proof else []) if it.landing == name and it.holdout == (kind == "holdout")}
-    before, improved = sides.get(BEFORE), sides.get(WINNER)
+    proven = {it.belief: it.predicted for it in (proof.flown if proof else []) if it.landing == name and it.holdout == (kind == "holdout")}
+    before, improved = proven.get(BEFORE), proven.get(WINNER)
     part = setup.landings.parts[k]
     before = null.predicted[part] if before is None else before
     improved = after.predicted[part] if after is not None and improved is None else improved
     spread = _spread(after, part) if after is not None else None
-    channels = [_channel(observation, i, (first, fitted, then), before, improved, spread) for i in range(len(observation.tracks))]
+    sides = [(first, {}), (fitted, _seen(setup, null, k)), (then, _seen(setup, after, k))]
+    channels = [_channel(observation, i, sides, before, improved, spread) for i in range(len(observation.tracks))]
     rest = [_rest(observation, i, raw[part], before, improved) for i in range(len(observation.readings))]
-    shown = then or fitted
+    shown, seen = next((course, seen) for course, seen in reversed(sides) if course is not None)
+    contact = observation.shift + seen.get(ORIGIN, 0.0)
     contacts = [
-        Contact(leg, shown.final[c] + observation.shift)
+        Contact(leg, shown.final[c] + contact)
         for leg, c in zip(("+Z", "+Y", "-Z", "-Y"), CONTACTS, strict=True)
         if shown.final[c] >= 0.0
     ]
-    return LandingCourses(name, "holdout" if kind == "holdout" else "fit", channels, rest, contacts)
+    return LandingCourses(name, "holdout" if kind == "holdout" else "fit", channels, rest, contacts, shift=observation.shift)
+
+
+def _seen(setup: Setup, fit: Fit | None, k: int) -> dict[str, float]:
+    """What a fit says of the data's clocks in landing k."""
+    if fit is None:
+        return {}
+    values = Model(setup.landings, fit.coordinates, Nobody()).values(fit.z, k)
+    return {name: value for name, value in values.items() if name.startswith(SEEN)}
 
 
 def _spread(fit: Fit, part: slice) -> Array:
@@ -226,21 +239,25 @@ def _spread(fit: Fit, part: slice) -> Array:
 def _channel(
     observation: Observation,
     i: int,
-    courses: tuple[Course, Course, Course | None],
+    sides: Sequence[tuple[Course | None, Mapping[str, float]]],
     before: Array,
     after: Array | None,
     spread: Array | None,
 ) -> ChannelCourse:
+    """sides: as it stands, fitted, with the effect: each a course with what its fit says of the data's clocks."""
     track, place, noise = observation.tracks[i], observation.places[i], observation.noises[i]
     last = float(track.times[-1]) - observation.shift + 0.1
     early = min(float(track.times[0]) - observation.shift, 0.0)
-    grid = np.concatenate([np.arange(early, 0.0, 0.01), courses[1].times[courses[1].times <= last]])
-    first, fitted, then = (None if c is None else sampled(c, track.column, grid) for c in courses)
+    times = np.concatenate([c.times for c, _ in sides[1:2] if c is not None])
+    grid = np.concatenate([np.arange(early, 0.0, 0.01), times[times <= last]])
+    late = [observation.late(track, seen) - observation.shift for _, seen in sides]
+    first, fitted, then = (None if c is None else sampled(c, track.column, grid - s) for (c, _), s in zip(sides, late, strict=True))
     band = None if spread is None else np.interp(grid + observation.shift, track.times, spread[place])
     residual = None if after is None else (track.readings - after[place]) / noise.sigma
     assert first is not None
+    unit = unit_of(track.channel).removeprefix("1")
     return ChannelCourse(
-        track.series, track.channel, UNITS.get(track.series, ""), track.times, track.readings, noise.sigma, grid + observation.shift,
+        track.series, track.channel, unit, track.times, track.readings, noise.sigma, grid + observation.shift,
         first, fitted, then, band, (track.readings - before[place]) / noise.sigma, residual,
     )  # fmt: skip
 
@@ -248,7 +265,7 @@ def _channel(
 def _rest(observation: Observation, i: int, raw: Array, before: Array, after: Array | None) -> RestValue:
     reading, row = observation.readings[i], observation.places[len(observation.tracks) + i].start
     value = None if reading.interval else reading.value
-    low, high = (reading.low, reading.high) if reading.interval else (None, None)
+    low, high, edge = (reading.low, reading.high, reading.edge) if reading.interval else (None, None, None)
     sigma = None if reading.interval else reading.sigma
     then = None if after is None else float(after[row])
-    return RestValue(reading.name, reading.unit, float(raw[row]), float(before[row]), then, value, sigma, low, high)
+    return RestValue(reading.name, reading.unit, float(raw[row]), float(before[row]), then, value, sigma, low, high, edge)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.flight import CoSimulation, Flight
-from orchestrator.diagnosis.observation import Observation
+from orchestrator.diagnosis.observation import EDGE, Observation
 from orchestrator.diagnosis.outcome import Gap
 from orchestrator.results.channels import Channels
 from orchestrator.results.energy import account_of
@@ -213,7 +213,7 @@ def in_sigmas(observation: Observation, difference: Array) -> dict[str, float]:
     tracks = zip(observation.tracks, observation.noises, observation.places, strict=False)
     found = {track.channel: _rms(difference[place] / noise.sigma) for track, noise, place in tracks}
     for reading, place in zip(observation.readings, observation.places[count:], strict=True):
-        sigma = reading.high - reading.low if reading.interval and np.isfinite(reading.high - reading.low) else reading.sigma
+        sigma = reading.edge / EDGE if reading.interval else reading.sigma  # the width, of an open one its end
         found[reading.name] = _rms(difference[place] / sigma)
     return found
 

@@ -13,7 +13,7 @@ from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.moves import Applied, Move, Named, applied_moves, sigma_of
 from orchestrator.diagnosis.observation import SEEN
-from orchestrator.diagnosis.overlay import Change, write_overlay
+from orchestrator.diagnosis.overlay import Change, overridden, slot_of_unit, write_overlay
 from orchestrator.scenario.read import Tree
 
 REVISED = "revised.toml"
@@ -26,17 +26,20 @@ def write_revision(
     title: str = "",
     remarks: Sequence[str] = (),
     master: Mapping[str, float] | None = None,
+    overrides: Sequence[str] = (),
 ) -> Path:
     """revised.toml: the effects' values and the units they add; what was only uncertain before the landing stays as it was.
 
-    Offsets of clocks are no unit's: they stand in `[results] clock_offsets`. master: settings other than the scenario's.
+    Offsets of clocks are no unit's: they stand in `[results] clock_offsets`. master: settings other than the scenario's;  overrides: what
+    the command line set, which the scenario's file does not have.
     """
     moves = [move for it in named for move in it.moves()]
     applied = applied_moves(addresses, moves)
     changes = [_change(addresses, address, applied, named) for address in applied.values]
-    lines = [*remarks, *_clock_remarks(applied.seen)]
+    lines = [*remarks, *(f"--set {override}" for override in overrides), *_clock_remarks(applied.seen)]
+    besides = overridden(addresses) if overrides else {}
     tables = _clock_table(applied.seen) | ({"master": dict(master)} if master else {})
-    return write_overlay(folder / REVISED, addresses, changes, inserts_of(named), title, lines, tables)
+    return write_overlay(folder / REVISED, addresses, changes, inserts_of(named), title, lines, tables, besides)
 
 
 def write_landing(
@@ -78,6 +81,9 @@ def _change(addresses: Addresses, address: str, applied: Applied, named: Sequenc
 
 
 def _differs(addresses: Addresses, change: Change) -> bool:
+    own = slot_of_unit(addresses, change.address)
+    if own is not None:
+        return bool(change.value != addresses.number(own))
     now = applied_moves(addresses, [Move(change.address, change.value, "set")]).values[change.address]
     return now != [addresses.number(slot) for slot in addresses.resolve(change.address)]
 

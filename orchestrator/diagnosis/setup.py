@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +17,11 @@ from orchestrator.diagnosis.effects.effect import Effect, Parameter
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.measured.landing import Measured, Prior, Scalar
-from orchestrator.diagnosis.observation import ORIGIN, Observation, Reading, Track
+from orchestrator.diagnosis.observation import ORIGIN, SEEN, Observation, Reading, Track
 from orchestrator.diagnosis.problem import Landings
 from orchestrator.diagnosis.recorded import twin_column
 from orchestrator.diagnosis.vehicle import Vehicle, vehicle_of
-from orchestrator.errors import MeasuredError, ScenarioError
+from orchestrator.errors import AddressError, MeasuredError, ScenarioError
 
 Array = NDArray[np.float64]
 ORIGIN_SIGMA = 0.005  # s: how well the data's zero is first contact when they say nothing else
@@ -86,19 +86,33 @@ def tolerances_of(vehicle: Vehicle, path: Path) -> list[Coordinate]:
         raise ScenarioError(f"{path}: no table of tolerances ({error}); restore the file") from None
     found = []
     for address, entry in table.items():
-        slots = tuple((name, 1.0) for group in vehicle.slots(address) for name in group)
+        slots = tuple((name, 1.0) for group in slots_or_none(vehicle, address) for name in group)
         if slots and any(vehicle.base.get(name, 0.0) != 0.0 for name, _ in slots):
             found.append(Coordinate(address, slots, float(entry["sigma_log"]), operation="scale", step=TOLERANCE_STEP))
     return found
 
 
+def slots_or_none(vehicle: Vehicle, address: str) -> list[list[str]]:
+    """`vehicle.slots`; nothing where somebody else's unit has no such parameter: only what the data say of one must be there."""
+    try:
+        groups = vehicle.slots(address)
+    except AddressError:
+        if not vehicle.why_slow:
+            raise
+        return []
+    return groups if all(name in vehicle.base or name.startswith(SEEN) for group in groups for name in group) else []
+
+
 def hypothesis_of(vehicle: Vehicle, effect: Effect) -> Hypothesis | str:
     """The effect in the lander's terms, or why it has none here."""
     coordinates = []
+    for address in effect.fixed:
+        if not slots_or_none(vehicle, address):
+            return f"{address} is not in what the search flies"
     for parameter in effect.parameters:
         slots: list[tuple[str, float]] = []
         for sign, address in parameter.signed_targets():
-            groups = vehicle.slots(address)
+            groups = slots_or_none(vehicle, address)
             if not groups:
                 return f"{address} is not in what the search flies"
             slots += [(name, sign) for group in groups for name in group]
@@ -172,9 +186,14 @@ def _column(addresses: Addresses, channel: str, where: str) -> str:
 
 
 def set_up(
-    blueprint: Blueprint, measured: Sequence[Measured], effects: Mapping[str, Effect], tolerances: Path, overrides: Sequence[str] = ()
+    blueprint: Blueprint,
+    measured: Sequence[Measured],
+    effects: Mapping[str, Effect],
+    tolerances: Path,
+    overrides: Sequence[str] = (),
+    names: Sequence[str] = (),
 ) -> Setup:
-    """Everything, or one line about what does not fit together."""
+    """Everything, or one line about what does not fit together. names: of the landings, instead of their folders'."""
     addresses = Addresses(blueprint)
     vehicle = vehicle_of(addresses, effects, overrides)
     base = vehicle.base
@@ -198,7 +217,32 @@ def set_up(
         else:
             hypotheses.append(found)
     landings = Landings(observations, bases, stops)
-    names = [one.folder.name for one in measured]
     return Setup(
-        addresses, vehicle.make, base, landings, names, nuisances, tolerances_of(vehicle, tolerances), hypotheses, skipped, vehicle.why_slow
+        addresses,
+        vehicle.make,
+        base,
+        landings,
+        list(names) or names_of([one.folder for one in measured]),
+        nuisances,
+        known_otherwise(tolerances_of(vehicle, tolerances), nuisances, len(measured)),
+        hypotheses,
+        skipped,
+        vehicle.why_slow,
     )
+
+
+def names_of(folders: Sequence[Path]) -> list[str]:
+    """What landings are called: their folders, with as many of those above as it takes to tell them apart."""
+    parts = [folder.resolve().parts for folder in folders]
+    for one in parts:
+        if parts.count(one) > 1:
+            raise MeasuredError(f"{Path(*one)}: is given twice; a landing can be measured or held out, once")
+    deepest = max(map(len, parts), default=1)
+    return next(names for k in range(1, deepest + 1) if len(set(names := ["/".join(one[-k:]) for one in parts])) == len(parts))
+
+
+def known_otherwise(tolerances: Sequence[Coordinate], nuisances: Sequence[Coordinate], landings: int) -> list[Coordinate]:
+    """The tolerances without what the data's own priors say of every landing: a mass known to 5 kg is not to move by 2 % beside."""
+    told = [name for one in nuisances for name, _ in one.slots for _ in range(landings if one.landing == SHARED else 1)]
+    left = [(one, tuple(slot for slot in one.slots if told.count(slot[0]) < landings)) for one in tolerances]
+    return [one if slots == one.slots else replace(one, slots=slots) for one, slots in left if slots]

@@ -53,7 +53,7 @@ def measures_between(state: State, names: Sequence[str]) -> list[Measure]:
         for track, place in zip(observation.tracks, observation.places, strict=False):
             found.append((float(np.sqrt(np.square(apart[place]).sum())), track.channel, track.sigma))
         for reading, place in zip(observation.readings, observation.places[len(observation.tracks) :], strict=True):
-            found.append((float(np.abs(apart[place]).sum()), reading.name, reading.sigma))
+            found.append((float(np.abs(apart[place]).sum()), reading.name, reading.edge if reading.interval else reading.sigma))
     measures = [(size / np.sqrt(DECIDES), channel, sigma) for size, channel, sigma in found if size > 0.0]
     measures.sort(key=lambda m: -m[0] / m[2])
     return [

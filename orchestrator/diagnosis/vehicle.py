@@ -53,6 +53,8 @@ class Vehicle:
 
 def vehicle_of(addresses: Addresses, effects: Mapping[str, Effect], overrides: Sequence[str] = ()) -> Vehicle:
     """The twin where it can stand in for the scenario, else the units themselves."""
+    if addresses.is_twin:
+        raise UserError(f"{addresses.where}: is the {TWIN}, as a search flies it anyway; give a scenario of separate units")
     parameters, reason = twin_parameters(addresses)
     twin, sensor = addresses.library(TWIN), addresses.library("RateSensor")
     if parameters is None or twin is None or sensor is None:

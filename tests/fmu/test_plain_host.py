@@ -8,6 +8,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from c_library import compiler
 from fmpy import read_model_description
 from hosted import OK, Hosted
 
@@ -27,7 +28,7 @@ def plain_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """examples/plain_host, compiled as its first lines say."""
     program = tmp_path_factory.mktemp("host") / "plain_host"
     headers, source = Path(fmpy.__file__).parent / "c-code", ROOT / "examples" / "plain_host" / "plain_host.c"
-    subprocess.run(["gcc", "-Wall", "-Werror", f"-I{headers}", "-o", str(program), str(source), "-ldl"], check=True)
+    subprocess.run([*compiler(), "-Wall", "-Werror", f"-I{headers}", "-o", str(program), str(source), "-ldl"], check=True)
     return program
 
 

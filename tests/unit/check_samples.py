@@ -9,6 +9,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 import fmpy
+from c_library import compiler
 from fmi_c_sample import SOURCE
 
 AXES = ("yaw", "pitch", "roll")
@@ -94,7 +95,8 @@ def c_sensor(fault: str = "") -> Path:
     (folder / "unit.c").write_text(source(fault))
     library = folder / f"{name}.so"
     headers = Path(fmpy.__file__).parent / "c-code"
-    subprocess.run(["gcc", "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", "-o", str(library), str(folder / "unit.c"), "-lm"], check=True)
+    command = [*compiler(), "-shared", "-fPIC", "-O1", "-w", f"-I{headers}", "-o", str(library)]
+    subprocess.run([*command, str(folder / "unit.c"), "-lm"], check=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", description(name, fault))
         archive.write(library, f"binaries/{fmpy.platform}/{name}{fmpy.sharedLibraryExtension}")

@@ -91,6 +91,7 @@ def test_other_units_or_other_data_are_not_answered_from_the_store(tmp_path: Pat
     before = Store(tmp_path / "work", [unit]).key(task)
     unit.write_bytes(b"two")
     assert Store(tmp_path / "work", [unit]).key(task) != before
+    assert Store(tmp_path / "work", [unit], "another interval").key(task) != Store(tmp_path / "work", [unit]).key(task)
     assert Store(tmp_path / "work").key(FitOne(task.landings, 1.001 * task.z)) != Store(tmp_path / "work").key(task)
 
 

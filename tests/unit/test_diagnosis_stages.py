@@ -231,3 +231,41 @@ def test_a_search_that_was_misled_or_explains_too_little_begins_anew(monkeypatch
     state = run_search(setup, None, 0, None, [Hypothesis(EFFECT, (), ())])  # type: ignore[arg-type]
     assert Scripted.again == ([EFFECT] if again else [])
     assert state.fits[EFFECT].objective == 60.0
+
+
+@pytest.mark.parametrize(("share", "refined"), [(1.02, False), (1.2, True)])
+def test_fits_are_seen_by_the_noise_that_later_fits_are_made_under(monkeypatch: Any, share: float, refined: bool) -> None:
+    """2 % of sigma over 387 rows are 8 in ln evidence: what is fitted later would be compared under another noise."""
+    landings = ringing_landing({})
+    (observation,) = landings.observations
+    model = Model(landings, [coordinate("hump", 0.04)], Ringing())
+    predicted = model.predict(np.zeros(1))
+    assert predicted is not None
+    before = {name: seen_from(model, np.zeros(1), predicted, np.ones((len(predicted), 1))) for name in (NULL.name, EFFECT)}
+    asked: list[str] = []
+
+    def refine_all(fits: list[Fit], stage: str) -> list[Fit]:
+        asked.append(stage)
+        return fits
+
+    def hear(*_: Any, best: bool) -> list[Course]:
+        observation.set_noise([Noise(share * n.sigma, n.rho, n.interval) for n in observation.noises])
+        return []
+
+    monkeypatch.setattr(stages, "hear_noise", hear)
+    search: Any = SimpleNamespace(refine_all=refine_all)
+    setup: Any = SimpleNamespace(landings=landings)
+    state = State(setup, search, before[NULL.name], dict(before))
+    stages._rehear(state, None)  # type: ignore[arg-type]
+    for name, fit in state.fits.items():
+        assert fit.chi2 == pytest.approx(before[name].chi2 / share**2)
+    assert asked == (["finalists"] if refined else [])
+
+
+def test_a_look_at_a_landing_has_every_column_that_was_measured() -> None:
+    stroke = Track("struts", "leg+Z.primary.stroke", "leg1.primary.stroke", TIMES, np.zeros(len(TIMES)), 0.01, None)
+    seen: list[Any] = []
+    crew: Any = SimpleNamespace(run=lambda tasks: [seen.append(task) for task in tasks])
+    setup: Any = SimpleNamespace(landings=one_landing([stroke], (), {}))
+    stages.look(setup, crew, (), np.zeros(0), 0)
+    assert seen[0].columns == (*RATES, *ATTITUDE, "leg1.primary.stroke")

@@ -20,12 +20,13 @@ from orchestrator.diagnosis.report import (
     write_distinction,
     write_report,
 )
+from orchestrator.diagnosis.report.courses import RestValue
 from orchestrator.diagnosis.report.file_names import FileNames
 from orchestrator.diagnosis.report.numbers import chance, number, percent, signed, with_sigma
 from orchestrator.diagnosis.report.plot_dots import missed, rest_picture
 from orchestrator.diagnosis.report.plot_where import where_picture
 from orchestrator.diagnosis.report.template import flat, in_words
-from orchestrator.diagnosis.report.words import caution
+from orchestrator.diagnosis.report.words import caution, command
 
 VOID = {"meta", "br", "link", "img", "hr"}
 SENTENCES = {
@@ -195,6 +196,30 @@ def test_the_report_says_whether_a_check_passed(tmp_path: Path) -> None:
         write_report(tmp_path, found, [])
         texts = [text.strip() for text in read(tmp_path / "report.html").texts]
         assert texts[texts.index("twin") :].index(said) < texts[texts.index("twin") :].index("interval")
+
+
+def test_windows_are_drawn_on_the_data_s_clock() -> None:
+    """They count from first contact, the residual's strip by the data's clock: here 50 s at first contact."""
+    course = replace(landing("a"), shift=50.0)
+    for one in course.channels:
+        one.data_times = one.data_times + 50.0
+    (window,) = [w for w in outcome("effect").where if w.channel == "rates.yaw"]
+    picture = where_picture([window], course, {})
+    assert picture is not None
+    (box,) = [patch for patch in picture.figure.axes[0].patches if patch.get_width() > 0.01]
+    assert (box.get_x(), box.get_x() + box.get_width()) == pytest.approx((50.0 + window.from_s, 50.0 + window.to_s))
+
+
+def test_an_interval_open_to_a_side_can_be_missed() -> None:
+    depth = RestValue("penetration.+Y", "m", 0.5, low=-np.inf, high=0.05, edge=0.0025)
+    assert missed(depth, 0.04) == 0.0
+    assert missed(depth, 0.055) == pytest.approx(-2.0)
+
+
+def test_of_a_verdict_that_became_numerics_nothing_of_the_search_is_told_and_nothing_is_to_be_run() -> None:
+    found = replace(outcome("effect"), verdict="numerics", sentence="")
+    assert verdict_sentence(found) == "The numerics are not fine enough to judge."
+    assert command(found).startswith("orchestrator diagnose ")
 
 
 def test_checks_and_terms_are_told_with_their_deviation() -> None:

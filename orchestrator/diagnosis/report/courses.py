@@ -59,6 +59,8 @@ class RestValue:
     sigma: float | None = None
     low: float | None = None
     high: float | None = None
+    edge: float | None = None
+    """Of an interval: what counts as one standard deviation outside it."""
 
 
 @dataclass
@@ -71,6 +73,8 @@ class LandingCourses:
     rest: list[RestValue] = field(default_factory=list)
     contacts: list[Contact] = field(default_factory=list)
     title: str = ""
+    shift: float = 0.0
+    """s: the data's clock at first contact, from which windows of disagreement count."""
 
     @property
     def heading(self) -> str:

@@ -49,13 +49,13 @@ def _inside(values: Sequence[RestValue]) -> str:
 
 
 def missed(value: RestValue, simulated: float | None) -> float | None:
-    """(measured - simulated)/σ; inside an interval 0, outside it in quarters of its width; None where that is not known."""
+    """(measured - simulated)/σ; inside an interval 0, outside it in what counts as σ there; None where that is not known."""
     if simulated is None or not np.isfinite(simulated):
         return None
     if value.value is not None and value.sigma and np.isfinite(value.value):
         return (value.value - simulated) / value.sigma
-    if value.low is not None and value.high is not None and value.high > value.low:
-        return (max(value.low - simulated, 0.0) - max(simulated - value.high, 0.0)) / (0.25 * (value.high - value.low))
+    if value.low is not None and value.high is not None and (edge := value.edge or 0.25 * (value.high - value.low)) > 0.0:
+        return (max(value.low - simulated, 0.0) - max(simulated - value.high, 0.0)) / edge
     return None
 
 

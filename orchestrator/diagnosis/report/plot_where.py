@@ -42,11 +42,12 @@ def where_picture(
     axes.set_xlabel(TIME, fontsize=9, color=INK)
     _residuals(axes, rows, strips)
     strongest = max((w.sigmas for w in timed if np.isfinite(w.sigmas)), default=1.0)
+    shift = landing.shift if landing else 0.0
     for window in timed:
-        _shade(axes, rows.index(window.channel), window, strongest)
+        _shade(axes, rows.index(window.channel), window, strongest, shift)
     axes.margins(x=0.02)
     axes.autoscale(axis="x")
-    contacts = [(c.pad, c.time) for c in landing.contacts] if landing and landing.contacts else list(events.items())
+    contacts = [(c.pad, c.time) for c in landing.contacts] if landing and landing.contacts else [(p, t + shift) for p, t in events.items()]
     _lines(axes, sorted(((pad, t) for pad, t in contacts if np.isfinite(t)), key=lambda pair: pair[1]))
     told = [f"{w.channel} from {w.from_s:.2f} to {w.to_s:.2f} s ({number(w.sigmas, 2)} sigma)" for w in timed]
     caption = STRONGEST if timed else NOWHERE
@@ -60,15 +61,16 @@ def where_picture(
     )
 
 
-def _shade(axes: Axes, row: int, window: Where, strongest: float) -> None:
+def _shade(axes: Axes, row: int, window: Where, strongest: float, shift: float) -> None:
     share = max(window.sigmas, 0.0) / strongest if np.isfinite(window.sigmas) and strongest > 0.0 else 0.3
     width = max(window.to_s - window.from_s, 1e-3)
-    box = (window.from_s, row - HEIGHT / 2)
+    start, end = window.from_s + shift, window.to_s + shift
+    box = (start, row - HEIGHT / 2)
     alpha = 0.15 + (DEEPEST - 0.15) * min(share, 1.0)
     axes.add_patch(Rectangle(box, width, HEIGHT, color=BEFORE, alpha=alpha, linewidth=0, zorder=2))
-    axes.update_datalim([(window.from_s, row), (window.to_s, row)])
+    axes.update_datalim([(start, row), (end, row)])
     text = f"{number(window.sigmas, 2)} σ"
-    axes.text(window.to_s, row - 0.24, f" {text}", fontsize=8, fontweight="bold", color=INK, ha="left", va="center", zorder=5)
+    axes.text(end, row - 0.24, f" {text}", fontsize=8, fontweight="bold", color=INK, ha="left", va="center", zorder=5)
 
 
 def _residuals(axes: Axes, rows: Sequence[str], strips: Mapping[str, ChannelCourse]) -> None:

@@ -71,7 +71,7 @@ def command(outcome: Outcome) -> str:
     """What to type."""
     scenario = _quoted(outcome.scenario or "SCENARIO")
     data = "".join(f" --measured {_quoted(folder)}" for folder in outcome.measured) or " --measured DIR"
-    if outcome.revised_scenario:
+    if outcome.revised_scenario and outcome.verdict != "numerics":
         return f"orchestrator run {_quoted(outcome.revised_scenario)}"
     if outcome.verdict in ("nothing_missing", "cannot_tell"):
         return f"orchestrator distinguish {scenario}{data}"

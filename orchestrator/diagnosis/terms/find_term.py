@@ -41,7 +41,7 @@ def find_term(state: State, setup: Setup, crew: Crew, seed: int = 0, told: Told 
     known = in_scenario(dictionary(), setup.addresses)
     regression = Regression(search, {n: term for n, (term, _) in known.items()}, {n: h for n, (_, h) in known.items()})
     tried = {part for name in state.fits for part in parts_of(name)}
-    offered = [n for n, (term, _) in known.items() if term.equals not in tried]
+    offered = [n for n, (term, _) in known.items() if not tried & {n, term.equals}]
     base = state.fits.get(NULL.name, state.base)
     best = best_of_library(state.fits)
     if best is not None and np.isfinite(beat):
