@@ -76,8 +76,10 @@ def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
     locate = scenario.table.master.locate
     located = matching_outputs(locate, interfaces, f"{scenario.where}: master.locate", DISCRETE) if locate else []
     bounds = bounds_of(scenario.table.until, interfaces, f"{scenario.where}: until")
+    if bounds and not recorded:
+        recorded = [[] for _ in interfaces]
     for bound in bounds:
-        if recorded and bound.output not in recorded[bound.unit]:
+        if bound.output not in recorded[bound.unit]:
             recorded[bound.unit].append(bound.output)
     return Blueprint(
         scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located, wiring.derived, wiring.made, bounds

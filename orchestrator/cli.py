@@ -8,6 +8,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
+from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -19,7 +21,7 @@ from orchestrator.campaign.sensitivity_command import sensitivity
 from orchestrator.check.command import check
 from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.doghouse.command import doghouse
-from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
+from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError, UserError
 from orchestrator.host_environment import host_env
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
@@ -75,6 +77,7 @@ def run(
     if tolerance is not None:
         changes["master"] = {"tolerance": tolerance}
     folder = out or Path("results") / (f"{path.stem}-{variant}" if variant else path.stem)
+    _can_take_results(folder)
     schedule = None if checkpoint_every is None else Schedule.asked(folder, checkpoint_every)
     simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes, variant), path))
     if schedule is None:
@@ -112,7 +115,11 @@ def _report(result: RunResult, folder: Path, figures: bool, quiet: bool) -> None
     from orchestrator import results
     from orchestrator.simulation import fault
 
-    summary = results.write(result, folder, figures)
+    try:
+        with _uninterrupted():
+            summary = results.write(result, folder, figures)
+    except OSError as failed:
+        raise RunError(f"{folder}: the results cannot be written ({failed}); make room, or give another --out") from None
     if not quiet:
         Console().print(results.terminal_table(summary))
     for warning in result.warnings:
@@ -123,6 +130,29 @@ def _report(result: RunResult, folder: Path, figures: bool, quiet: bool) -> None
     error = fault(result)
     if error is not None:
         raise error
+
+
+def _can_take_results(folder: Path) -> None:
+    """Before a run, not after it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise UserError(f"{folder}: cannot take the results ({error.strerror}); give another --out") from None
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """A Ctrl-C while files are written would leave some of this run beside some of an earlier one."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, lambda *_: _complain("interrupted", "the results are being written, which ends by itself"))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _leaving(folder: Path, figures: bool, quiet: bool) -> Callable[[RunResult], None]:

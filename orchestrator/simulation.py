@@ -179,6 +179,7 @@ class Simulation:
     def _result(self, message: str) -> RunResult:
         master, table, scenario = self.master, self.blueprint.scenario.table, self.blueprint.scenario
         accepted = sum(row.accepted for row in master.log)
+        complete = master.complete and not message  # at the stop time, too, a unit may fail: its last row is not there
         interrupted = not master.complete and not message
         trust = "" if message or interrupted else distrust(master, self.blueprint.scenario.where)
         if interrupted:
@@ -205,8 +206,8 @@ class Simulation:
             unresolved=master.unresolved,
             wall_time=master.wall_time,
             wall_time_units=sum(slave.seconds for slave in self.system.slaves),
-            complete=master.complete,
-            trusted=master.complete and not trust,
+            complete=complete,
+            trusted=complete and not trust,
             interrupted=interrupted,
             message=message or trust,
             warnings=master.warnings,

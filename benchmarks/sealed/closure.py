@@ -63,12 +63,19 @@ def _revised(vehicle: Vehicle, diagnosis: Tree) -> list[tuple[Effect, Sequence[f
     named = [it for it in diagnosis.get("effects") or [] if it["name"] in vehicle.effects]
     found = [_at(vehicle, vehicle.effects[it["name"]], it["parameters"]) for it in named]
     term = diagnosis.get("term") or {}
-    value = (term.get("coefficient") or {}).get("value")
-    if not found and diagnosis.get("verdict") == "none_of_my_effects" and term.get("fixed") and value:
-        size = abs(float(value))
-        exponents = {address.partition(".")[2]: value for address, value in term["fixed"].items()}
-        found.append((law("term", size, "term", term["port"], "active", **exponents), [math.copysign(1.0, float(value))]))
+    if not found and diagnosis.get("verdict") == "none_of_my_effects":
+        found = [_law_of(it, f"term{k}") for k, it in enumerate((term, term.get("second") or {})) if _has_size(it)]
     return found
+
+
+def _has_size(term: Tree) -> bool:
+    return bool(term.get("fixed") and (term.get("coefficient") or {}).get("value"))
+
+
+def _law_of(term: Tree, name: str) -> tuple[Effect, Sequence[float]]:
+    value = float(term["coefficient"]["value"])
+    exponents = {address.partition(".")[2]: exponent for address, exponent in term["fixed"].items()}
+    return law(name, abs(value), "term", term["port"], "active", **exponents), [math.copysign(1.0, value)]
 
 
 def _at(vehicle: Vehicle, effect: Effect, parameters: Tree) -> tuple[Effect, Sequence[float]]:

@@ -195,5 +195,10 @@ def _key(vehicle: Vehicle, plan: Plan, hidden: Hidden, scenes: list[Scene], land
 def _write_manifest(out: Path, keys: Path, n: int) -> None:
     """What is public of the set: how many, by which commit, and a digest of each key, so that none can be changed afterwards."""
     digests = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(keys.glob("[0-9]*.json"))}
+    public = out / "set.json"
+    known = json.loads(public.read_text("utf-8"))["keys_sha256"] if public.is_file() else {}
+    changed = [case for case, digest in digests.items() if known.get(case, digest) != digest]
+    if changed:
+        raise ValueError(f"{keys}: the key of case {changed[0]} is not the one that {public} has; begin a new set")
     manifest = {"cases": n, "made_by": commit(), "keys_sha256": digests}
-    (out / "set.json").write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
+    public.write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")

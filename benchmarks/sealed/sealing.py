@@ -52,6 +52,7 @@ def environment(log: Path) -> dict[str, str]:
 def diagnose(case: Path, result: Path, diagnosis: Diagnosis) -> dict[str, Any]:
     """The record of one run, also in RESULT/run.json, beside diagnosis.json and the list of files opened."""
     result.mkdir(parents=True, exist_ok=True)
+    (result / "closure.json").unlink(missing_ok=True)  # of an earlier diagnosis
     with tempfile.TemporaryDirectory(prefix="sealed-") as place:
         room = Path(place)
         for name in ("fit", "holdout"):

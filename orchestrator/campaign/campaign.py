@@ -113,6 +113,8 @@ class Campaign:
         if known.is_file():
             then = json.loads(known.read_text(encoding="utf-8"))
             _require_same(folder, then, about)
+            if not self.inputs.equals(pq.read_table(folder / "inputs.parquet")):
+                raise UserError(f"{folder}: was begun with other inputs; give another --out, or go back to those it was begun with")
             return DataSet(folder, self.inputs, then["outputs"])
         if folder.is_dir() and any(folder.iterdir()):
             raise UserError(f"{folder}: holds something that is no campaign; give another --out")

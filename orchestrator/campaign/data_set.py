@@ -6,6 +6,7 @@ between merging and deleting leaves a landing in two parts, the same in both, an
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -44,7 +45,7 @@ class DataSet:
         if self.whole.is_file():
             return set(pq.read_table(self.whole, columns=[INDEX])[INDEX].to_pylist())
         self.parts.mkdir(parents=True, exist_ok=True)
-        for unfinished in self.parts.glob("*.unfinished"):
+        for unfinished in (*self.parts.glob("*.unfinished"), *(part for part in self.parts.glob("*.parquet") if not _is_whole(part))):
             unfinished.unlink()
         if len(list(self.parts.glob("*.parquet"))) > 1:
             self._merge()
@@ -94,7 +95,18 @@ class DataSet:
         unfinished = path.with_suffix(".unfinished")
         one = table.num_rows == 1                          # a dictionary of one value is not worth its making
         pq.write_table(table, unfinished, compression="zstd", use_dictionary=not one, write_statistics=not one)
+        with unfinished.open("rb") as file:
+            os.fsync(file.fileno())                        # a power cut must not leave the name without the content
         unfinished.replace(path)
+
+
+def _is_whole(part: Path) -> bool:
+    """Whether it can be read: a machine that went down may leave one that cannot; its landings are flown again."""
+    try:
+        pq.read_metadata(part)
+    except (pa.ArrowInvalid, OSError):
+        return False
+    return True
 
 
 def kept_landings(folder: Path) -> pa.Table:

@@ -31,8 +31,8 @@ def _description(path: Path) -> Iterator[Finding]:
 def _dependencies(interface: Interface, structure: Structure) -> Iterator[Finding]:
     outputs = [v.name for v in interface.of("output")]
     listed = [name for name in outputs if name in structure.outputs or stem(name) in structure.outputs]
-    references = {interface.variables[name].reference for name in listed}      # another name of the same variable needs no line of its own
-    unlisted = [v.name for v in interface.of("output") if v.reference not in references]
+    known = {(v.type, v.reference) for v in map(interface.variables.__getitem__, listed)}      # another name needs no line of its own
+    unlisted = [v.name for v in interface.of("output") if (v.type, v.reference) not in known]
     silent = [name for name in listed if known_of(structure.outputs, name) is None]
     if unlisted:
         what = f"ModelStructure does not list {len(unlisted)} of {len(outputs)} outputs"

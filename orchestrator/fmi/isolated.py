@@ -25,6 +25,8 @@ from orchestrator.master.slave import Binding, Interface, Kind, Status, Value
 
 _PATIENCE = 2.0
 """s in which a child that was told to end does so."""
+UNDER_WAY = ("save", "restore", "observe")
+"""What is asked between steps: there is a run to be kept when the process dies in one of these."""
 
 
 class Request(NamedTuple):
@@ -166,4 +168,5 @@ class IsolatedUnit:
         if method == "step":
             step = f"doStep, its step {self.steps}, from t = {arguments[0]:.9g} s"
             return StepError(f"{self.name}: crashed in {step}: its process {how}{said}; mend the unit")
-        return UnitError(f"{self.name}: crashed in {method}: its process {how}{said}; mend the unit")
+        kind = StepError if method in UNDER_WAY else UnitError
+        return kind(f"{self.name}: crashed in {method}: its process {how}{said}; mend the unit")

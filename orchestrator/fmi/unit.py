@@ -217,31 +217,44 @@ class FmuUnit(ABC):
             if in_place(group, fmi_type):
                 calls.append(access.call([v for _, v in group], pointer(vector, group[0][0]), len(group)))
             else:
-                blocks.append(Block(access, fmi_type, group, self._arrays, vector))
+                arrays = {variable.reference: self._arrays[self._key(variable)] for _, variable in group}
+                blocks.append(Block(access, fmi_type, group, arrays, vector))
         return calls, blocks
 
     @cached_property
-    def _arrays(self) -> dict[int, list[Variable]]:
-        """Reference -> the elements it stands for, in order."""
-        found: dict[int, dict[int, Variable]] = {}
+    def _arrays(self) -> dict[tuple[str, int], list[Variable]]:
+        """(get and set functions, reference) -> the elements it stands for, in order: FMI 2.0 numbers each type for itself."""
+        found: dict[tuple[str, int], dict[int, Variable]] = {}
         for variable in self.interface.variables.values():
-            found.setdefault(variable.reference, {}).setdefault(variable.element, variable)
-        return {reference: [elements[at] for at in sorted(elements)] for reference, elements in found.items()}
+            found.setdefault(self._key(variable), {}).setdefault(variable.element, variable)
+        return {key: [elements[at] for at in sorted(elements)] for key, elements in found.items()}
+
+    def _key(self, variable: Variable) -> tuple[str, int]:
+        return self._types[variable.type].calls, variable.reference
+
+    def _by_first_name(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """The values under the names that stand in `_arrays`: of aliases the first."""
+        given = {}
+        for name, value in values.items():
+            own = self.interface.variables[name]
+            first = next(it for it in self._arrays[self._key(own)] if it.element == own.element)
+            given[first.name] = value
+        return given
 
     def _start_blocks(self) -> None:
         for block in self._sending:
-            block.start(self._given)
+            block.start(self._by_first_name(self._given))
 
     def _start_calls(self, values: Mapping[str, Value]) -> list[Call]:
         """One call for each variable or whole array that is given a start value."""
         calls: list[Call] = []
-        arrays = self._arrays if values else {}
-        for variable in {v.reference: v for v in self._variables(list(values))}.values():
-            fmi_type, elements = self._types[variable.type], arrays[variable.reference]
+        given = self._by_first_name(values)
+        for key, variable in {self._key(v): v for v in self._variables(list(values))}.items():
+            fmi_type, elements = self._types[variable.type], self._arrays[key]
             array = (fmi_type.c_type * len(elements))()
-            fill(array, elements, fmi_type, values)
+            fill(array, elements, fmi_type, given)
             call = self._access("Set", fmi_type).call([variable], array, len(elements))
-            shown = ", ".join(f"{e.name} = {values[e.name]}" for e in elements if e.name in values)
+            shown = ", ".join(f"{e.name} = {given[e.name]}" for e in elements if e.name in given)
             calls.append(call._replace(what=f"set {shown}"))
         return calls
 

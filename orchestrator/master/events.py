@@ -58,12 +58,12 @@ class Events:
             self.warnings += [f"{name}: its scheduled times are not met, because a unit takes one step size only" for name in names]
             self._scheduled = []
 
-    def cut(self, interval: int, time: int, limits: StepLimits) -> Cut:
-        """The controller's interval, or less."""
+    def cut(self, interval: int, time: int, limits: StepLimits, most: int) -> Cut:
+        """The controller's interval, or less; never above `most`, which a refusal left."""
         why = ""
         instant, unit = self._next_scheduled(time)
         if instant:
-            shorter = fit_to_stop(interval, instant - time, limits)
+            shorter = min(fit_to_stop(interval, instant - time, limits), most)
             if shorter != interval or time + shorter == instant:
                 interval, why = shorter, f"scheduled {self._system.slaves[unit].name}"
         if self.aim > time:

@@ -191,9 +191,10 @@ class Master:
             slave.save()
         self._sweep.time = self._time
         self._sweep.note_start()
-        followed = False
+        followed, most = False, self._stop
         while True:
-            interval, cut = self.events.cut(fit_to_stop(wanted, self._stop - self._time, self.limits), self._time, self.limits)
+            fitted = min(fit_to_stop(wanted, self._stop - self._time, self.limits), most)
+            interval, cut = self.events.cut(fitted, self._time, self.limits, most)
             refused, event = self._attempt(interval), ""
             if refused is None:
                 verdict, estimate, limit = self._judged(interval)
@@ -202,7 +203,7 @@ class Master:
             if refused is not None:
                 self._note(interval, nan, False, refused.kind)
                 self._settling = SETTLING
-                wanted = next_attempt(refused, self._time, interval, self.limits, not followed)
+                most = wanted = next_attempt(refused, self._time, interval, self.limits, not followed)
                 followed = followed or bool(refused.reached)
                 self._undo()
                 continue
@@ -221,7 +222,7 @@ class Master:
                 return resume(verdict, interval, wanted, estimate, self.limits) if cut else verdict.next_interval
             self._settling = SETTLING
             self._undo()
-            wanted = verdict.next_interval
+            most = wanted = verdict.next_interval  # what was refused is not to come back as the rest up to a stop or an event
 
     def _finish_or_find(self, interval: int) -> tuple[Refusal | None, str]:
         """Units stepped once, unless an event is seen before; the refusal of one, or the event seen."""

@@ -19,6 +19,7 @@ from orchestrator.results.touchdown import touchdown
 def write(result: RunResult, out: Path, figures: bool = True) -> dict[str, Any]:
     """Write everything the run has, complete or not, into `out` and return what summary.json holds."""
     out.mkdir(parents=True, exist_ok=True)
+    (out / "summary.json").unlink(missing_ok=True)  # first away, last written: it is never beside another run's rows
     history.write_csv(result, out / "history.csv")
     history.write_parquet(result, out / "history.parquet")
     history.write_solver_log(result.log, out / "solver_log.csv")

@@ -175,6 +175,7 @@ def _override(units: list[UnitEntry], text: str) -> None:
     if not chosen:
         raise ScenarioError(f'--set {text}: no unit "{pattern}"; {nearest(pattern, [u.name for u in units])}')
     for unit in chosen:
+        unit.parameters.pop(parameter, None)  # to the end: a vector or element of it that was set before must not come after
         unit.parameters[parameter] = toml_value(value)
 
 

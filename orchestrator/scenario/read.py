@@ -90,6 +90,7 @@ def _merged(base: Tree, overlay: Tree) -> Tree:
         elif key == "connections" and isinstance(value, list) and isinstance(merged.get(key), list):
             merged[key] = [*merged[key], *value]
         else:
+            merged.pop(key, None)  # to the end: what is said last counts, of a vector and its elements too
             merged[key] = value
     return merged
 

@@ -133,6 +133,7 @@ class Wiring:
             sources = [companion(v.name, suffix) if suffix else v.name for v in given]
             for row, (name, other) in enumerate(zip(names, taken, strict=True)):
                 used = np.flatnonzero(change.weights[row])
+                used = used if used.size else np.arange(len(sources))  # scaled by zero: sent all the same
                 parts = [sources[k] for k in used]
                 if parts and all(part in known and known[part].causality == "output" for part in parts):
                     weights = tuple(float(change.weights[row, k]) for k in used)

@@ -48,9 +48,11 @@ class Contents:
     def fmu(self, path: Path, sha256: str) -> str:
         """The name an FMU gets; two versions of one unit get two."""
         if sha256 not in self.hashes:
-            taken = [n for n in self.files if Path(n).stem.partition("-")[0] == path.stem]
-            self.hashes[sha256] = f"{RESOURCES}/{path.stem}{f'-{len(taken) + 1}' if taken else ''}.fmu"
-            self.files[self.hashes[sha256]] = path
+            member, number = f"{RESOURCES}/{path.stem}.fmu", 1
+            while member in self.files:
+                number += 1
+                member = f"{RESOURCES}/{path.stem}-{number}.fmu"
+            self.hashes[sha256], self.files[member] = member, path
         return self.hashes[sha256]
 
 

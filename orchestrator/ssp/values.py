@@ -80,9 +80,9 @@ def _in_unit(archive: Archive, what: str, parameter: Parameter, variable: Variab
     def one(value: Any) -> Any:
         if isinstance(value, bool | str):
             return value
-        factor, offset, as_is = parameter.way
-        moved = value if (factor, offset) == (1.0, 0.0) else factor * value + offset      # whole numbers stay whole
-        return moved if as_is or conversion == (1.0, 0.0) else conversion[0] * moved + conversion[1]
+        factor, offset, _ = parameter.way
+        converted = value if conversion == (1.0, 0.0) else conversion[0] * value + conversion[1]      # whole numbers stay whole
+        return converted if (factor, offset) == (1.0, 0.0) else factor * converted + offset
 
     return [one(x) for x in parameter.value] if isinstance(parameter.value, list) else one(parameter.value)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,11 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
 from sealed import diagnoses, report, scoring, sealing, targets
+from sealed.closure import _revised
 from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
 from sealed.kinds import SHARES, Plan, counts, plans
-from sealed.make import FINE, made, make, scenes_of
+from sealed.make import FINE, _write_manifest, made, make, scenes_of
 from sealed.pool import pooled
 from sealed.vehicle import ZUPP, Vehicle
 from sealed.wilson import wilson
@@ -247,6 +249,34 @@ def test_pairs_are_right_together_and_in_a_set() -> None:
         said = {"verdict": "cannot_tell", "cannot_tell": {"names": ["a", "b", "c"], "answers": answers}}
         score = scoring.scored("0", both, said)
         assert (score.answer, score.hits) == (answer, 2)
+
+
+@pytest.mark.parametrize("kind", ["outside", "twin", "decoy"])
+def test_a_case_without_a_diagnosis_counts_against_every_target(kind: str) -> None:
+    rows = [row for row in targets.table([scoring.scored("0", key(kind, "a"), None)]) if row["n"]]
+    assert [row["met"] for row in rows] == ["missed"] * len(rows)
+
+
+def test_two_laws_of_a_verdict_are_both_in_its_closure() -> None:
+    one = {"port": "soil.normal", "fixed": {"soil.normal_term_depth": 1.0}, "coefficient": {"value": 300.0}}
+    both = {"verdict": "none_of_my_effects", "term": {**one, "second": {**one, "port": "body", "coefficient": {"value": -50.0}}}}
+    vehicle: Any = SimpleNamespace(effects={})
+    found = _revised(vehicle, both)
+    assert [(effect.port, list(z)) for effect, z in found] == [("soil.normal", [1.0]), ("body", [-1.0])]
+    assert found[0][0].name != found[1][0].name
+
+
+def test_a_key_that_was_changed_is_refused(tmp_path: Path) -> None:
+    keys, out = tmp_path / "keys", tmp_path / "set"
+    keys.mkdir()
+    out.mkdir()
+    (keys / "000.json").write_text("{}")
+    _write_manifest(out, keys, 1)
+    (keys / "001.json").write_text("{}")
+    _write_manifest(out, keys, 2)
+    (keys / "000.json").write_text("{ }")
+    with pytest.raises(ValueError, match="the key of case 000 is not the one"):
+        _write_manifest(out, keys, 2)
 
 
 def test_parameters_are_compared_in_prior_and_stated_sigma() -> None:

@@ -8,9 +8,12 @@ import sys
 import time
 from pathlib import Path
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from fmi_samples import oscillator
+
+from orchestrator.campaign.data_set import DataSet
 
 CAMPAIGN = """
 scenario = "oscillator.toml"
@@ -131,3 +134,25 @@ def test_a_folder_begun_with_another_campaign_is_not_gone_on_with(begun: Path) -
     assert done.returncode == 2
     assert "was begun with another campaign (seed); give another --out" in done.stderr
     assert os.path.getsize(begun / "uninterrupted" / "landings.parquet") > 0
+
+
+def test_a_folder_begun_with_other_inputs_is_not_gone_on_with(begun: Path) -> None:
+    """A table of inputs can change under the same name."""
+    folder = begun / "uninterrupted"
+    kept = (folder / "inputs.parquet").read_bytes()
+    table = pq.read_table(folder / "inputs.parquet")
+    pq.write_table(table.slice(0, table.num_rows - 1), folder / "inputs.parquet")
+    try:
+        done = campaign(begun / "few.toml", "--out", folder)
+    finally:
+        (folder / "inputs.parquet").write_bytes(kept)
+    assert done.returncode == 2
+    assert "was begun with other inputs; give another --out" in done.stderr
+
+
+def test_a_part_that_a_power_cut_spoilt_is_flown_again(tmp_path: Path) -> None:
+    data = DataSet(tmp_path, pa.table({"index": [0, 1]}), {})
+    data.begin()
+    (data.parts / "000001.parquet").write_bytes(b"")
+    assert data.begin() == set()
+    assert not list(data.parts.glob("*.parquet"))

@@ -4,6 +4,7 @@ import shutil
 import signal
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +17,9 @@ from orchestrator.fmi import load as loading
 from orchestrator.fmi.description import read_interface
 from orchestrator.fmi.slave2 import Fmi2Unit
 from orchestrator.fmi.texts import text_of
+from orchestrator.fmi.types import types_of
 from orchestrator.fmi.unpack import content_hash, unpack
-from orchestrator.master.slave import Binding, Status
+from orchestrator.master.slave import Binding, Interface, Kind, Status, Variable
 from orchestrator.master.system import System
 from orchestrator.simulation import Simulation, run_scenario
 
@@ -228,6 +230,41 @@ def test_a_fatal_unit_ends_the_run_and_what_was_computed_stays(tmp_path: Path) -
     assert not result.trusted
     assert "the ground gave way" in result.message
     assert 0.09 < result.times[-1] <= 0.1 + 1e-9
+
+
+@pytest.mark.parametrize("record", ["interval = 10.0", ""])
+def test_a_unit_that_fails_in_its_last_row_has_not_completed_the_run(tmp_path: Path, record: str) -> None:
+    scenario = tmp_path / "moody.toml"
+    head = f'stop_time = 0.2\nfmus = "{sample_fmus().as_posix()}"\n[master]\nmax_interval = 0.1\n[record]\n{record}\n'
+    scenario.write_text(head + '[units.m]\nfmu = "SampleMoody"\n')
+    result = run_scenario(scenario, ["m.nan_from=0.1"])
+    assert "time is nan" in result.message
+    assert (result.complete, result.trusted, result.interrupted) == (False, False, False)
+
+
+class Overheard(Fmi2Unit):
+    """Notes what it is given instead of setting it: FMI 2.0 numbers the variables of each type for themselves."""
+
+    def __init__(self, *variables: Variable) -> None:
+        self.name, self.interface = "u", Interface("U", {v.name: v for v in variables}, fmi_version="2.0")
+        self._types, self._component, self.heard = types_of("2.0"), None, []
+
+    def _function(self, what: str) -> Any:
+        return lambda component, references, count, values: self.heard.append((what, list(references), list(values)[:count])) or 0
+
+
+def test_references_are_each_type_s_own() -> None:
+    real, whole = Variable("h", causality="output"), Variable("n", Kind.INTEGER, "parameter", type="Integer")
+    unit = Overheard(real, whole, Variable("on", Kind.BOOLEAN, "parameter", reference=1, type="Boolean"),
+                     Variable("gain", causality="parameter", start="1.5", reference=1))  # fmt: skip
+    unit.change({"n": 5, "on": True, "gain": 2.5})
+    assert sorted(unit.heard) == [("SetBoolean", [1], [1]), ("SetInteger", [0], [5]), ("SetReal", [1], [2.5])]
+
+
+def test_a_value_given_to_an_alias_is_the_variable_s() -> None:
+    unit = Overheard(Variable("c", causality="local", reference=7), Variable("damping", causality="parameter", start="0.1", reference=7))
+    unit.change({"damping": 0.4})
+    assert unit.heard == [("SetReal", [7], [0.4])]
 
 
 def test_the_start_is_solved_to_the_last_digits(tmp_path: Path) -> None:

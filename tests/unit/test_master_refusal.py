@@ -39,6 +39,24 @@ def test_a_refused_interval_is_retried_at_half_its_length() -> None:
     assert master.recorder.columns()["clock.count"][-1] == len(taken)      # refused attempts are undone
 
 
+@pytest.mark.parametrize(("longest", "stop"), [(1.5e-3, 1.8e-3), (2.5e-3, 6.9e-3)])
+def test_what_was_refused_does_not_come_back_as_the_rest_of_the_run(longest: float, stop: float) -> None:
+    """The rest is cut so that no interval is shorter than the smallest; a unit that refuses the rest must be given less all the same."""
+    settings = MasterSettings(max_interval=4e-3, min_interval=1e-3, tolerance=1e9)
+    master = prepared(System([clock(longest=longest)], [], recorded=[["count"]]), settings, stop=stop)
+    master.run(lambda _: None if len(master.log) < 50 else pytest.fail("the same interval again and again"))
+    assert master.complete
+    assert max(row.interval for row in master.log if row.accepted) <= longest
+
+
+def test_a_tolerance_that_no_interval_holds_ends_the_run_near_its_stop_too() -> None:
+    system = System([mass("a", 1.0, 0.0), mass("b", 2.0, 1.2), spring()], links(), recorded=[["x"], ["x"], ["stretch"]])
+    master = prepared(system, MasterSettings(max_interval=1e-3, min_interval=5e-5, tolerance=1e-13), stop=1.025e-3)
+    master.run(lambda _: None if len(master.log) < 200 else pytest.fail("the same interval again and again"))
+    assert master.complete
+    assert len(master.log) < 200
+
+
 def test_a_refusal_in_a_loop_undoes_every_unit() -> None:
     picky = spring()
     inner = picky._advance

@@ -80,6 +80,18 @@ def test_paths_are_relative_to_the_file_that_states_them(tmp_path: Path) -> None
     assert tree["units"]["body"]["fmu"] == "Body"
 
 
+@pytest.mark.parametrize(("given", "said", "last"), [
+    ({"inertia[1]": 5.0, "inertia": [1.0, 2.0, 3.0]}, "inertia[1]=9", ["inertia", "inertia[1]"]),
+    ({"inertia": [1.0, 2.0, 3.0], "inertia[1]": 5.0}, "inertia=[4, 5, 6]", ["inertia[1]", "inertia"]),
+])  # fmt: skip
+def test_what_is_set_last_counts_of_a_vector_and_its_elements(given: dict[str, Any], said: str, last: list[str]) -> None:
+    table = check_table({"stop_time": 1.0, "units": {"body": {"fmu": "B", "parameters": given}}}, "x")
+    (unit,) = expand(table, "x", [f"body.{said}"]).units
+    assert list(unit.parameters) == last
+    merged = merge({"parameters": given}, {"parameters": {last[-1]: 0.0}})
+    assert list(merged["parameters"]) == last
+
+
 def test_set_reaches_one_unit_or_all_that_match(tmp_path: Path) -> None:
     scenario = scenario_of(tmp_path, FOUR, "leg*.mass=4", "leg+Y.mass=5.5", "body.inertia=[1, 2, 3]", "body.name=plain words")
     assert [u.parameters.get("mass") for u in scenario.units] == [None, 4, 5.5]

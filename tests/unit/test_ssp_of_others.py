@@ -2,6 +2,8 @@
 
 import importlib.resources
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from lxml import etree
@@ -10,10 +12,14 @@ from ssp_samples import plain_ssp, texts
 
 from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.errors import OrchestratorError
+from orchestrator.master.slave import Variable
 from orchestrator.simulation import run_scenario
 from orchestrator.ssp.archive import schema_fault
+from orchestrator.ssp.values import Parameter, _in_unit
+from orchestrator.ssp.ways import Way
 
 both = pytest.mark.parametrize("version", ["1.0", "2.0"])
+METRES, MILLIMETRES = ((0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, factor, 0.0) for factor in (1.0, 1e-3))
 TWO = importlib.resources.files("pyssp_standard") / "resources" / "ssp2"
 
 
@@ -57,6 +63,13 @@ def test_values_come_from_files_prefixed_mapped_and_converted_and_the_outer_leve
     found = values(plain_ssp(tmp_path, version))
     assert found["first"] == {"u": 0.5, "wall": 0.04}         # u by way of the system's own connector, which nothing feeds
     assert found["inner_part_second"] == {"wall": pytest.approx(0.5), "error_from": 8.0}      # 2 x 250 ms over the 1 s set inside
+
+
+def test_a_parameter_is_converted_before_it_is_transformed(tmp_path: Path) -> None:
+    """SystemStructureCommon.xsd: "prior to the application of the linear transformation": 500 mm, doubled, and 0.1 m more are 1.1 m."""
+    given, wanted = Parameter("p", 500.0, "mm", MILLIMETRES, Way(2.0, 0.1)), Variable("p", unit="m", dimension=METRES)
+    archive: Any = SimpleNamespace(where="x.ssp")
+    assert _in_unit(archive, "u.p", given, wanted) == pytest.approx(1.1)
 
 
 def test_a_suppressed_unit_conversion_leaves_the_transformation_alone(tmp_path: Path) -> None:
