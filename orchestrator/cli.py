@@ -77,9 +77,9 @@ def run(
     if tolerance is not None:
         changes["master"] = {"tolerance": tolerance}
     folder = out or Path("results") / (f"{path.stem}-{variant}" if variant else path.stem)
-    _can_take_results(folder)
     schedule = None if checkpoint_every is None else Schedule.asked(folder, checkpoint_every)
     simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes, variant), path))
+    _can_take_results(folder)
     if schedule is None:
         clear(folder / FOLDER)
     simulation.on_hang = _leaving(folder, figures, quiet)

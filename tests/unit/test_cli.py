@@ -89,6 +89,14 @@ def test_a_broken_scenario_is_one_line_and_exit_code_two(tmp_path: Path, old: st
     assert len(done.stderr.strip().splitlines()) == 1
 
 
+def test_a_place_that_cannot_take_results_is_refused_before_the_run(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("a file\n")
+    done = orchestrator("run", oscillator(tmp_path), "--out", tmp_path / "taken", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "taken: cannot take the results (File exists); give another --out" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
 def test_a_missing_scenario_names_the_nearest(tmp_path: Path) -> None:
     (tmp_path / "scenarios").mkdir()
     oscillator(tmp_path / "scenarios")
