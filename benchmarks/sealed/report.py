@@ -32,7 +32,7 @@ def scores_of(keys: Path, results: Path, recompute: bool, told: Callable[[str], 
         run, diagnosis = load(place / "run.json"), load(place / "diagnosis.json")
         if run is None and diagnosis is None:
             continue
-        if run is not None and run.get("watched") is False:
+        if diagnosis is not None and (run or {}).get("watched") is False:
             raise UnsealedError(f"{place}: nobody noted which files this diagnosis opened; its result is void")
         seen = opened_keys(run or {}, keys)
         if seen:

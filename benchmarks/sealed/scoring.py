@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from orchestrator.diagnosis.hypothesis import parts_of
+
 Tree = Mapping[str, Any]
 Answer = Literal["right", "set", "wrong set", "wrong", "abstained", "refused", "nothing", "unjudged"]
 """right or wrong name; a set with or without the truth; none in it; "none of my effects"; "nothing missing";
 data or numbers at fault, or no diagnosis."""
 SURE = 0.9
-BESIDE = " + "
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None
     """closure: computed anew from the noise-free truth; without it what the diagnosis says itself."""
     said: Tree = diagnosis or {"verdict": "none given"}
     truth, named = tuple(effect["name"] for effect in key["effects"]), _named(said)
-    parts = {part for name in named for part in name.split(BESIDE)}
+    parts = {part for name in named for part in parts_of(name)}
     effects = list(said.get("effects") or [])
     errors, pulls = _errors(key, effects)
     outside = key["kind"] == "outside"
@@ -98,7 +99,7 @@ def _answer_set(truth: Sequence[str], named: Sequence[str]) -> Answer:
     """Right where one of its answers, which may be a pair, is the whole truth."""
     if not named:
         return "abstained"
-    return "set" if any(set(name.split(BESIDE)) == set(truth) for name in named) else "wrong set"
+    return "set" if any(set(parts_of(name)) == set(truth) for name in named) else "wrong set"
 
 
 def _errors(key: Tree, effects: Sequence[Tree]) -> tuple[dict[str, float], dict[str, float]]:

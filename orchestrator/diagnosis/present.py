@@ -248,8 +248,9 @@ def _channel(
     track, place, noise = observation.tracks[i], observation.places[i], observation.noises[i]
     last = float(track.times[-1]) - observation.shift + 0.1
     early = min(float(track.times[0]) - observation.shift, 0.0)
-    times = np.concatenate([c.times for c, _ in sides[1:2] if c is not None])
-    grid = np.concatenate([np.arange(early, 0.0, 0.01), times[times <= last]])
+    shown = sides[1][0]
+    assert shown is not None
+    grid = np.concatenate([np.arange(early, 0.0, 0.01), shown.times[shown.times <= last]])
     late = [observation.late(track, seen) - observation.shift for _, seen in sides]
     first, fitted, then = (None if c is None else sampled(c, track.column, grid - s) for (c, _), s in zip(sides, late, strict=True))
     band = None if spread is None else np.interp(grid + observation.shift, track.times, spread[place])

@@ -237,8 +237,10 @@ def names_of(folders: Sequence[Path]) -> list[str]:
     for one in parts:
         if parts.count(one) > 1:
             raise MeasuredError(f"{Path(*one)}: is given twice; a landing can be measured or held out, once")
-    deepest = max(map(len, parts), default=1)
-    return next(names for k in range(1, deepest + 1) if len(set(names := ["/".join(one[-k:]) for one in parts])) == len(parts))
+    k = 1
+    while len({one[-k:] for one in parts}) < len(parts):
+        k += 1
+    return ["/".join(one[-k:]) for one in parts]
 
 
 def known_otherwise(tolerances: Sequence[Coordinate], nuisances: Sequence[Coordinate], landings: int) -> list[Coordinate]:

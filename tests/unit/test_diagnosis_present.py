@@ -5,6 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from orchestrator.blueprint import draw_up, read_scenario
@@ -12,6 +13,8 @@ from orchestrator.diagnosis import present
 from orchestrator.diagnosis.addresses import Addresses
 from orchestrator.diagnosis.diagnose import Diagnosis, Request
 from orchestrator.diagnosis.hypothesis import joined
+from orchestrator.diagnosis.landing import RATES, SPIN, Course
+from orchestrator.diagnosis.observation import Observation, Track
 from orchestrator.diagnosis.outcome import Estimate, Outcome
 from orchestrator.diagnosis.revision import write_revision
 from orchestrator.diagnosis.terms.dictionary import dictionary
@@ -61,3 +64,20 @@ def test_two_laws_found_at_once_are_both_revised_kept_and_have_their_units(tmp_p
         present._keep_term(request, it, setup)
     assert {path.stem for path in (tmp_path / "found").glob("*.toml")} == {soil.name, torque.name}
     assert len(list((tmp_path / "found").glob("*.fmu"))) == 2
+
+
+def test_a_simulated_course_is_drawn_when_the_fitted_clocks_say_it_was() -> None:
+    """A course that counts s since first contact; the clock has 50 s there, as fitted 30 ms more, and in this series 20 ms."""
+    times = np.arange(0.0, 1.0, 0.05)
+    track = Track("rates", "rates.yaw", "rates.yaw", 50.0 + times, np.zeros(len(times)), 0.01, None)
+    observation = Observation([track], [])
+    observation.shift = 50.0
+    zeros = np.zeros(len(times))
+    course = Course(np.arange(0.0, 1.2, 0.05), {name: np.arange(0.0, 1.2, 0.05) for name in (*RATES, *SPIN)}, {})
+    late = {"time.origin": 0.03, "clock.rates": 0.02}
+    drawn = present._channel(observation, 0, [(course, {}), (course, late), (None, {})], zeros, None, None)
+    inside = (drawn.times > 50.1) & (drawn.times < 50.9)
+    assert drawn.before_fitted is not None
+    assert (drawn.times - drawn.before)[inside] == pytest.approx(50.0, abs=1e-3)
+    assert (drawn.times - drawn.before_fitted)[inside] == pytest.approx(50.05, abs=1e-3)
+    assert drawn.unit == "rad/s"

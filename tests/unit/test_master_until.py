@@ -88,3 +88,10 @@ def test_a_run_that_takes_too_long_ends_with_an_error_and_keeps_its_rows(tmp_pat
     assert not result.trusted
     assert "master.wall_limit of 1e-09 s used up at t = " in result.message
     assert len(result.times) == 2  # the limit is looked at after each step
+
+
+def test_a_condition_is_watched_though_nothing_else_is_recorded(tmp_path: Path) -> None:
+    until = '\n[record]\nvariables = []\n[until]\nhold = 0.01\nbelow = { "a.position" = 1e9 }\n'
+    result = run_scenario(oscillator(tmp_path, until))
+    assert result.times[-1] < 0.05
+    assert list(result.columns) == ["a.position"]

@@ -15,6 +15,7 @@ from orchestrator.errors import OrchestratorError
 from orchestrator.master.slave import Variable
 from orchestrator.simulation import run_scenario
 from orchestrator.ssp.archive import schema_fault
+from orchestrator.ssp.export import Contents
 from orchestrator.ssp.values import Parameter, _in_unit
 from orchestrator.ssp.ways import Way
 
@@ -128,3 +129,10 @@ def test_what_cannot_be_read_is_one_line_with_its_place(tmp_path: Path, changed:
 def test_an_archive_without_a_description_says_so(tmp_path: Path) -> None:
     with pytest.raises(OrchestratorError, match=r"holds no SystemStructure\.ssd; is it an \.ssp\?"):
         drawn(packed(tmp_path / "empty.ssp", {"readme.txt": "nothing"}))
+
+
+def test_two_units_of_one_file_name_are_two_in_an_archive() -> None:
+    contents = Contents()
+    members = [contents.fmu(Path(folder) / "my-gnc.fmu", folder) for folder in ("a", "b", "a")]
+    assert members == ["resources/my-gnc.fmu", "resources/my-gnc-2.fmu", "resources/my-gnc.fmu"]
+    assert contents.files[members[1]] == Path("b/my-gnc.fmu")
