@@ -17,7 +17,7 @@ from orchestrator.diagnosis.problem import Landings, Model
 from orchestrator.diagnosis.search import Search, UnflyableError
 from sealed.energy import energy, scaled_to
 from sealed.instruments import observation
-from sealed.scene import STOP, Scene, centred, model_of
+from sealed.scene import STOP, Scene, base_of, centred, model_of
 from sealed.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Signatures:
     """White changes of one scene's prediction by effects, and what nuisances leave of them: by their slopes, and fitted anew."""
 
     def __init__(self, vehicle: Vehicle, scene: Scene, lander: Lander) -> None:
-        self.vehicle, self.scene, self.lander = vehicle, centred(scene), lander
+        self.vehicle, self.scene, self.lander = vehicle, centred(vehicle, scene), lander
         model = model_of(vehicle, self.scene, lander)
         predicted = model.predict(self.scene.z)
         if predicted is None:
@@ -112,7 +112,7 @@ class Signatures:
         """What the effects leave, without noise, as data; and the coordinates of the effect beside the nuisances."""
         there = self.flown(effects, z)
         own = tuple(self.vehicle.coordinates(beside)) if beside else ()
-        base = {**self.vehicle.base, **(self.vehicle.fixed(beside) if beside else {})}
+        base = base_of(self.vehicle, self.scene, self.vehicle.fixed(beside) if beside else None)
         return None if there is None else Landings([observation(self.vehicle, self.scene.sampling, there)], [base], [STOP]), own
 
     def sized_by_what_is_left(self, effect: Effect, target: float, random: Random) -> Hidden | None:

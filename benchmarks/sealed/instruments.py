@@ -22,6 +22,7 @@ Random = np.random.Generator
 Item = TypeVar("Item")
 SIGMA = {"rates": 0.0017, "attitude": 0.0009}  # rad/s, rad: Apollo's telemetry
 STROKE, SKID, PENETRATION = 6.35e-3, 0.01, 6e-3  # m, standard deviations
+BOUNDED = 1.0  # m: of a scalar known by bounds alone, which hardly counts for λ
 OTHER = {"rad/s": ("deg/s", 180.0 / pi), "rad": ("deg", 180.0 / pi), "m": ("ft", 1.0 / 0.3048), "m/s": ("ft/s", 1.0 / 0.3048)}
 
 
@@ -65,7 +66,8 @@ def observation(vehicle: Vehicle, sampling: Sampling, readings: Array | None = N
             values = np.zeros(len(times)) if readings is None else readings[at : at + len(times)]
             tracks.append(Track(series, channel, column, times, values, SIGMA[series], sampling.colour))
             at += len(times)
-    scalars = [Reading(name, twin, 0.0 if readings is None else float(readings[at + i]), sigma_of(name))
+    scalars = [Reading(name, twin, 0.0 if readings is None else float(readings[at + i]),
+                       BOUNDED if name in sampling.intervals else sigma_of(name))
                for i, (name, twin) in enumerate(final_columns(vehicle).items())]  # fmt: skip
     found = Observation(tracks, scalars)
     found.shift = sampling.origin
@@ -82,7 +84,7 @@ def clean_readings(vehicle: Vehicle, sampling: Sampling, course: Course, values:
 
 
 def noisy(random: Random, vehicle: Vehicle, sampling: Sampling, clean: Array) -> Array:
-    """AR(1) noise on the series, its colour per typical interval; white noise on the scalars."""
+    """AR(1) noise on the series, its colour per typical interval; white noise on the scalars, none where bounds are laid round them."""
     rows, seen = clean.copy(), observation(vehicle, sampling)
     for track, whitening, place in zip(seen.tracks, seen.whitenings, seen.places, strict=False):
         error, before = np.empty(len(track.times)), 0.0
@@ -91,7 +93,7 @@ def noisy(random: Random, vehicle: Vehicle, sampling: Sampling, clean: Array) ->
             before = follow * before + np.sqrt(1.0 - follow**2) * track.sigma * w
             error[k] = before
         rows[place] += error
-    scalars = np.array([reading.sigma for reading in seen.readings])
+    scalars = np.array([0.0 if reading.name in sampling.intervals else reading.sigma for reading in seen.readings])
     rows[len(rows) - len(scalars) :] += scalars * random.standard_normal(len(scalars))
     return rows
 

@@ -24,7 +24,7 @@ from sealed.hidden import Hidden, Signatures, parameters
 from sealed.instruments import clean_readings, noisy, public
 from sealed.kinds import NULLS, TWINS, Plan, plans
 from sealed.outside import LAWS
-from sealed.scene import Scene, drawn_scene
+from sealed.scene import Scene, centred, drawn_scene
 from sealed.vehicle import JITTERED, Vehicle
 
 Array = NDArray[np.float64]
@@ -140,7 +140,7 @@ def _hidden(vehicle: Vehicle, plan: Plan, scene: Scene, random: Random, skipped:
 
 def already_uncertain(vehicle: Vehicle, effect: Effect, scene: Scene) -> bool:
     """Whether a nuisance moves the same variables as each of its parameters: it then is a nuisance beyond its prior, a decoy."""
-    known = {frozenset(name for name, _ in c.slots) for c in scene.coordinates}
+    known = {frozenset(name for name, _ in c.slots) for c in centred(vehicle, scene).coordinates}
     return all(frozenset(name for name, _ in c.slots) in known for c in vehicle.coordinates(effect))
 
 
@@ -194,11 +194,16 @@ def _key(vehicle: Vehicle, plan: Plan, hidden: Hidden, scenes: list[Scene], land
 
 def _write_manifest(out: Path, keys: Path, n: int) -> None:
     """What is public of the set: how many, by which commit, and a digest of each key, so that none can be changed afterwards."""
-    digests = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(keys.glob("[0-9]*.json"))}
     public = out / "set.json"
-    known = json.loads(public.read_text("utf-8"))["keys_sha256"] if public.is_file() else {}
+    manifest = {"cases": n, "made_by": commit(), "keys_sha256": unchanged(keys, public)}
+    public.write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
+
+
+def unchanged(keys: Path, manifest: Path) -> dict[str, str]:
+    """Case → digest of its key; ValueError where a manifest that exists has another."""
+    digests = {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(keys.glob("[0-9]*.json"))}
+    known = json.loads(manifest.read_text("utf-8"))["keys_sha256"] if manifest.is_file() else {}
     changed = [case for case, digest in digests.items() if known.get(case, digest) != digest]
     if changed:
-        raise ValueError(f"{keys}: the key of case {changed[0]} is not the one that {public} has; begin a new set")
-    manifest = {"cases": n, "made_by": commit(), "keys_sha256": digests}
-    public.write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
+        raise ValueError(f"{keys}: the key of case {changed[0]} is not the one that {manifest} has; begin a new set")
+    return digests

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from sealed import diagnoses
 from sealed.kinds import SHARES
-from sealed.make import UnmadeError, make
+from sealed.make import UnmadeError, make, unchanged
 from sealed.pool import pooled
 from sealed.report import UnsealedError, report, scores_of
 from sealed.sealing import COMMAND, Diagnosis
@@ -64,6 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     running.add_argument("--limit", type=float, default=7200.0, help="s of wall time a case may take")
     scoring = commands.add_parser("score", help="join diagnoses and keys")
     scoring.add_argument("--keys", type=Path, required=True)
+    scoring.add_argument("--set", type=Path, help="folder of the public side: its digests are asked whether a key was changed")
     scoring.add_argument("--results", type=Path, required=True)
     scoring.add_argument("--out", type=Path, required=True)
     scoring.add_argument("--stated-closure", action="store_true", help="take the gap's closure as each diagnosis states it")
@@ -94,6 +95,10 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _score(options: argparse.Namespace) -> int:
+    if options.set is not None:
+        if not (options.set / "set.json").is_file():
+            raise ValueError(f"{options.set}: holds no set.json; give the folder that `make` wrote")
+        unchanged(options.keys, options.set / "set.json")
     with _bar("scores", len(list(options.keys.glob("[0-9]*.json")))) as told:
         scores = scores_of(options.keys, options.results, not options.stated_closure, lambda _: told())
     if not scores:

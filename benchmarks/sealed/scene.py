@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.problem import Landings, Model
 from sealed.instruments import Sampling, drawn_sampling, observation
 from sealed.kinds import Plan
-from sealed.vehicle import Known, Vehicle
+from sealed.vehicle import JITTERED, Known, Vehicle
 
 Array = NDArray[np.float64]
 Random = np.random.Generator
@@ -31,6 +32,8 @@ class Scene:
     sampling: Sampling
     coordinates: tuple[Coordinate, ...]
     z: Array
+    settled: Mapping[str, float] = field(default_factory=dict)
+    """Twin's variable → true value, of what nobody looks for."""
 
 
 def conditions(vehicle: Vehicle, random: Random, moved: float) -> tuple[Known, ...]:
@@ -56,21 +59,29 @@ def drawn_scene(vehicle: Vehicle, random: Random, plan: Plan, gap: Array, moved:
         z[which] = random.uniform(2.0, 3.0, len(which)) * random.choice([-1.0, 1.0], len(which))
     z[-1] = 0.0  # the clock's origin is in the sampling
     sampling = drawn_sampling(random, plan.colour, plan.misstated, vehicle.addresses.legs)
-    return Scene(known, sampling, (*nuisances, *vehicle.tolerances()), np.concatenate([z, gap]))
+    return Scene(known, sampling, (*nuisances, *vehicle.gap()), np.concatenate([z, gap]))
 
 
-def centred(scene: Scene) -> Scene:
-    """The same landing with the true nuisances at z = 0: a prior that pulls to what they are."""
+def centred(vehicle: Vehicle, scene: Scene) -> Scene:
+    """The same landing with the true nuisances at z = 0, a prior that pulls to what they are; what no diagnosis looks for stays true."""
+    free = [c.name in vehicle.looked_for or c.name not in JITTERED for c in scene.coordinates]
     there = [c.mean + c.sigma * float(x) for c, x in zip(scene.coordinates, scene.z, strict=True)]
-    coordinates = tuple(replace(c, mean=p) for c, p in zip(scene.coordinates, there, strict=True))
-    return replace(scene, coordinates=coordinates, z=np.zeros(len(coordinates)))
+    coordinates = tuple(replace(c, mean=p) for c, p, own in zip(scene.coordinates, there, free, strict=True) if own)
+    others = [c for c, own in zip(scene.coordinates, free, strict=True) if not own]
+    settled = vehicle.values(others, scene.z[~np.array(free)])
+    return replace(scene, coordinates=coordinates, z=np.zeros(len(coordinates)), settled=settled)
+
+
+def base_of(vehicle: Vehicle, scene: Scene, fixed: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Every value of the twin that coordinates do not move."""
+    return {**vehicle.base, **scene.settled, **(fixed or {})}
 
 
 def model_of(
-    vehicle: Vehicle, scene: Scene, lander: Lander, more: tuple[Coordinate, ...] = (), base: dict[str, float] | None = None
+    vehicle: Vehicle, scene: Scene, lander: Lander, more: tuple[Coordinate, ...] = (), fixed: Mapping[str, float] | None = None
 ) -> Model:
     """The scene as the search's problem: its nuisances and tolerances, then `more`."""
-    landings = Landings([observation(vehicle, scene.sampling)], [{**vehicle.base, **(base or {})}], [STOP])
+    landings = Landings([observation(vehicle, scene.sampling)], [base_of(vehicle, scene, fixed)], [STOP])
     return Model(landings, (*scene.coordinates, *more), lander)
 
 

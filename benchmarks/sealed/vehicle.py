@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,6 +26,7 @@ from orchestrator.simulation import draw_up, read_scenario
 Array = NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[2]
 ZUPP = ROOT / "scenarios" / "apollo11_zupp.toml"
+TOLERANCES = ROOT / "scenarios" / "tolerances.toml"
 LIBRARY = ROOT / "scenarios" / "candidates"
 CLOCKS_APART = 0.1  # s: how well the data's clock is known against first contact
 JITTER = 0.02  # of everything below: the reality gap
@@ -78,10 +80,19 @@ class Vehicle:
         found = [c for one in known for c in self._known(one)]
         return [*found, Coordinate("origin", ((ORIGIN, 1.0),), CLOCKS_APART, unit="s")]
 
-    def tolerances(self) -> list[Coordinate]:
-        """What any model knows to 2 per cent only."""
+    def gap(self) -> list[Coordinate]:
+        """The reality gap: what a vehicle has that its model has not, 2 per cent of each."""
         slots = {address: tuple((name, 1.0) for name in self.addresses.twin(address) or ()) for address in JITTERED}
         return [Coordinate(address, names, JITTER, operation="scale") for address, names in slots.items()]
+
+    def tolerances(self) -> list[Coordinate]:
+        """The part of the gap that a diagnosis looks for, too."""
+        return [it for it in self.gap() if it.name in self.looked_for]
+
+    @cached_property
+    def looked_for(self) -> frozenset[str]:
+        """Addresses that a diagnosis lets vary inside a band."""
+        return frozenset(tomllib.loads(TOLERANCES.read_text("utf-8"))["tolerances"])
 
     def coordinates(self, effect: Effect) -> list[Coordinate]:
         """Those of an effect's parameters, with their priors."""

@@ -119,10 +119,17 @@ class Master:
         """A unit that takes one step size only sets it for all: nothing can then be rejected. Whether there is one."""
         for slave in self.system.slaves:
             if not slave.interface.capabilities.get("canHandleVariableCommunicationStepSize", True):
+                self._expect_whole_steps(slave.name)
                 self.limits = self.limits._replace(minimum=self.limits.maximum)
                 self.warnings.append(f"{slave.name}: takes one step size only, so every interval is {self.settings.max_interval:g} s")
                 return True
         return False
+
+    def _expect_whole_steps(self, unit: str) -> None:
+        length, step = self._stop - self._begin, self.limits.maximum
+        if length % step:
+            whole = f"master.max_interval of {step / NANOSECONDS:g} s does not divide the run of {length / NANOSECONDS:.9g} s"
+            raise UnitError(f"{unit}: takes one step size only, but {whole}; change max_interval or stop_time")
 
     def run(self, on_step: StepListener | None = None) -> None:
         """To the stop time. Raises RunError when a unit fails; what was recorded stays."""

@@ -18,6 +18,7 @@ from orchestrator.scenario.record import matching_outputs
 from orchestrator.simulation import Simulation
 from orchestrator.ssp.names import DEFAULT_SSD, RESOURCES
 from orchestrator.ssp.write import description, text_of
+from orchestrator.terrain.hand_over import MAP
 
 _NAME = re.compile(r"[A-Za-z0-9_+.\-]+")
 _MADE = (1980, 1, 1, 0, 0, 0)
@@ -86,6 +87,9 @@ def _variant(base: Path, overlay: Path, overrides: Sequence[str]) -> Any:
 
 def _add(contents: Contents, ssd: str, blueprint: Blueprint, outputs: Sequence[str], step: float | None) -> None:
     values = solved_values(blueprint)
+    for given in values:
+        if given.get(MAP):
+            given[MAP] = contents.beside(Path(str(given[MAP])))
     sources = [contents.fmu(_file(name, i.path), i.sha256) for name, i in blueprint.interfaces.items()]
     annotation = _annotation(contents, blueprint)
     where = f"{blueprint.scenario.where}: --output"

@@ -12,7 +12,7 @@ from orchestrator.fmi.description import read_interface
 from orchestrator.master.slave import Interface, stem
 from orchestrator.ssp.archive import Archive, every, first, opened
 from orchestrator.ssp.joins import Ends, Joined, joins
-from orchestrator.ssp.names import OSP_ANNOTATION, SCENARIO_ANNOTATION, tag
+from orchestrator.ssp.names import OSP_ANNOTATION, RESOURCES, SCENARIO_ANNOTATION, tag
 from orchestrator.ssp.structure import Node, Structure, Wire, flattened
 from orchestrator.ssp.values import Given, start_values
 from orchestrator.ssp.ways import Way, alteration
@@ -32,7 +32,7 @@ def read_system(path: Path, variant: str = "") -> Tree:
     wires = structure.wires()
     fed = {wire.target for wire in wires}
     values = {
-        path: {name: value for name, value in given.items() if (path, name) not in fed}     # the master finds those itself
+        path: {name: _found(archive, value) for name, value in given.items() if (path, name) not in fed}     # the master finds those itself
         for path, given in start_values(archive, structure, interfaces).items()
     }  # fmt: skip
     tree: Tree = {"title": archive.description.get("name", ""), **_times(archive), **own}
@@ -45,6 +45,13 @@ def read_system(path: Path, variant: str = "") -> Tree:
         if beside.is_file():
             tree[table] = own[table] | {key: str(beside)}
     return tree
+
+
+def _found(archive: Archive, value: Given) -> Given:
+    """A text that names a file of the archive is where that file now lies."""
+    if isinstance(value, str) and value.startswith(f"{RESOURCES}/") and (archive.folder / value).is_file():
+        return str(archive.folder / value)
+    return value
 
 
 def _own_annotation(archive: Archive) -> Tree:

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,9 +20,11 @@ from sealed import diagnoses, report, scoring, sealing, targets
 from sealed.closure import _revised
 from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
+from sealed.instruments import noisy, observation, public
 from sealed.kinds import SHARES, Plan, counts, plans
-from sealed.make import FINE, _write_manifest, made, make, scenes_of
+from sealed.make import FINE, _write_manifest, made, make, scenes_of, unchanged
 from sealed.pool import pooled
+from sealed.scene import base_of, centred
 from sealed.vehicle import ZUPP, Vehicle
 from sealed.wilson import wilson
 
@@ -66,6 +69,38 @@ def test_what_is_handed_over_reads_and_is_near_the_truth(vehicle: Vehicle, tmp_p
         clean = np.array(key[name]["clean"])[: 3 * n].reshape(3, n)
         order = [rates.channels.index(f"rates.{axis}") for axis in ("yaw", "pitch", "roll")]
         assert np.std(rates.values[:, order].T - clean) == pytest.approx(0.0017, rel=0.2)
+
+
+def test_bounds_hold_the_truth_and_do_not_count_as_values(vehicle: Vehicle) -> None:
+    """200 draws: laid round a noisy reading, one bound in twenty left the truth outside."""
+    plan = plans(1, 8, ("null white",))[0]
+    scene = scenes_of(vehicle, plan, [8, 1, 0])[0]
+    bounded = tuple(f"penetration.{leg}" for leg in vehicle.addresses.legs)
+    sampling = replace(scene.sampling, intervals=bounded)
+    seen = observation(vehicle, sampling)
+    clean = np.full(seen.size, 0.05)
+    for seed in range(50):
+        rows = noisy(np.random.default_rng(seed), vehicle, sampling, clean)
+        given = public(vehicle, replace(sampling, shuffle=seed), rows, scene.known, "")
+        for it in given.values:
+            if it.name in bounded:
+                feet = {"m": 1.0, "ft": 0.3048}[it.unit]
+                assert it.kind == "interval"
+                assert feet * it.low < 0.05 < feet * it.high
+    assert {reading.sigma for reading in seen.readings if reading.name in bounded} == {1.0}
+
+
+def test_what_no_diagnosis_looks_for_stays_true_where_an_effect_is_sized(vehicle: Vehicle) -> None:
+    scene = scenes_of(vehicle, plans(1, 8, ("null white",))[0], [8, 1, 0])[0]
+    there = centred(vehicle, scene)
+    unseen = {c.name for c in scene.coordinates} - {c.name for c in there.coordinates}
+    assert unseen == {"gear.joint_damping", "gear.damping_ratio", "gear.primary_strut_mass", "gear.footpad_mass"}
+    whole = vehicle.values(scene.coordinates, scene.z)
+    kept = base_of(vehicle, there) | vehicle.values(there.coordinates, there.z)
+    assert {name: kept[name] for name in whole} == pytest.approx(whole, rel=1e-12)
+    names = {c.name for c in vehicle.tolerances()}
+    assert len(names) == 12
+    assert not names & unseen
 
 
 def test_kinds_add_up_and_their_order_says_nothing() -> None:
@@ -275,8 +310,9 @@ def test_a_key_that_was_changed_is_refused(tmp_path: Path) -> None:
     (keys / "001.json").write_text("{}")
     _write_manifest(out, keys, 2)
     (keys / "000.json").write_text("{ }")
-    with pytest.raises(ValueError, match="the key of case 000 is not the one"):
-        _write_manifest(out, keys, 2)
+    for told in (lambda: _write_manifest(out, keys, 2), lambda: unchanged(keys, out / "set.json")):
+        with pytest.raises(ValueError, match="the key of case 000 is not the one"):
+            told()
 
 
 def test_parameters_are_compared_in_prior_and_stated_sigma() -> None:

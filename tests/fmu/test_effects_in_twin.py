@@ -145,6 +145,10 @@ def test_an_effect_at_null_leaves_the_landing_as_it_was_to_the_last_bit(name: st
         np.testing.assert_array_equal(land(effect, others).rows, base.rows)
 
 
+def test_a_firing_without_torque_may_begin_at_any_time(land: Land, base: Flight) -> None:
+    np.testing.assert_array_equal(land(EFFECTS["rcs_pulse"], {"start": 0.1037}).rows, base.rows)
+
+
 @pytest.mark.parametrize("name", IN_FLIGHT)
 def test_an_effect_at_a_start_changes_the_landing_and_its_energy_is_accounted_for(name: str, land: Land, base: Flight) -> None:
     flight = land(EFFECTS[name], EFFECTS[name].starts[0])

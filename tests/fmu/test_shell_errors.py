@@ -88,3 +88,35 @@ def test_a_unit_with_wrong_parameters_never_crashes_its_host(fmus: dict[str, Pat
             one.slave.exitInitializationMode()
             assert one.step(0.0, 1e-3) == DISCARD, name
             assert f"{parameter} is nan" in one["message"], name
+
+
+@pytest.mark.parametrize(
+    ("units", "values", "says"),
+    [
+        (("VehicleBody", "LunarLander"), {"inertia[1]": 4e4}, "the principal moments are 17409, 20800 and 40000 kg.m2"),
+        (("VehicleBody", "LunarLander"), {"inertia_products[1]": 17000.0}, "expects each more than 0"),
+        (("GearLeg", "LunarLander"), {"primary_boundary": 0.9}, "primary_boundary is 0.9 m, expects less than primary_limit, 0.812 m"),
+    ],
+)
+def test_the_twin_refuses_what_its_units_refuse(
+    fmus: dict[str, Path], host: Host, units: tuple[str, ...], values: dict[str, float], says: str
+) -> None:
+    for name in units:
+        one = host(fmus[name], **values)
+        assert says in one["message"], name
+        assert one.step(0.0, 1e-3) == DISCARD
+
+
+@pytest.mark.parametrize("name", ["RegolithContact", "LunarLander"])
+def test_a_run_that_begins_before_zero_is_refused_where_a_contact_is_dated(fmus: dict[str, Path], host: Host, name: str) -> None:
+    one = host(fmus[name], initialise=False)
+    one.slave.reset()
+    one.slave.setupExperiment(startTime=-2.0)
+    one.slave.enterInitializationMode()
+    one.slave.exitInitializationMode()
+    assert "the run begins at -2 s, expects 0 s or later" in one["message"]
+    assert one.step(-2.0, 1e-3) == DISCARD
+
+
+def test_a_flat_body_is_a_body(fmus: dict[str, Path], host: Host) -> None:
+    assert host(fmus["VehicleBody"], **{"inertia[1]": 3e4, "inertia[2]": 1e4, "inertia[3]": 2e4}).step(0.0, 1e-3) == OK

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 from hosted import OK, Hosted
 
 Host = Callable[..., Hosted]
@@ -43,6 +44,17 @@ def test_a_state_of_another_size_is_refused_and_the_host_lives(toy: Path, host: 
     one.slave.setFMUState(one.slave.deSerializeFMUstate(b"12345678"))
     assert "the state restored has 1 numbers" in one["message"]
     assert one.step(0.0, 1e-2) != OK
+
+
+def test_a_state_whose_parameters_cannot_be_prepared_is_refused_every_time(toy: Path, host: Host) -> None:
+    one = host(toy, mass=4.0)
+    numbers = np.frombuffer(one.slave.serializeFMUState(one.slave.getFMUState())).copy()
+    numbers[numbers == 4.0] = -4.0
+    broken = one.slave.deSerializeFMUstate(numbers.tobytes())
+    for _ in range(2):
+        one.slave.setFMUState(broken)
+        assert "the state restored: ValueError" in one["message"]
+        assert one.step(0.0, 1e-2) != OK
 
 
 def test_reset_gives_a_new_instance(toy: Path, host: Host) -> None:

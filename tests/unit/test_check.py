@@ -9,6 +9,7 @@ import pytest
 from check_samples import c_sensor
 
 from orchestrator.check.trials import TRIALS
+from orchestrator.check.trials.rollback import _places
 
 FAULTS = {
     "missing port": ("names", "telemetry.roll", 'did you mean "telemetry.rol"?'),
@@ -94,3 +95,9 @@ def test_what_is_no_fmu_is_told_in_one_line(tmp_path: Path) -> None:
     code, errors, _ = ran(tmp_path / "text.fmu", tmp_path)
     assert code == 2
     assert "text.fmu: not a readable FMU" in errors
+
+
+@pytest.mark.parametrize(("count", "places"), [(1, [0]), (4, [0]), (9, [0, 6]), (16, [0, 5, 10]), (99, [0, 33, 66])])
+def test_a_state_is_saved_only_where_the_unit_is(count: int, places: list[int]) -> None:
+    """After going back it has gone on five steps: a place before these would be stepped at times where the unit is not."""
+    assert _places(count) == places

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from master_samples import error_of, fixed, oscillator, spring
 
+from orchestrator.errors import UnitError
 from orchestrator.master.settings import MasterSettings
 
 
@@ -89,6 +90,13 @@ def test_a_unit_of_one_step_size_fixes_the_interval_for_all() -> None:
     assert {row.interval for row in master.log} == {5e-3}
     assert any("spring: takes one step size only" in warning for warning in master.warnings)
     assert master.unresolved > 0
+
+
+def test_a_step_that_does_not_divide_the_run_is_refused_where_a_unit_takes_no_other() -> None:
+    rigid = spring()
+    rigid.interface.capabilities["canHandleVariableCommunicationStepSize"] = False
+    with pytest.raises(UnitError, match=r"spring: takes one step size only, but master.max_interval of 0.003 s does not divide"):
+        oscillator(MasterSettings(max_interval=3e-3, tolerance=1e-7), spring_unit=rigid)
 
 
 def test_a_loop_without_estimate_is_told_to_the_user() -> None:

@@ -12,7 +12,9 @@ from ssp_samples import in_unit
 
 from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.errors import OrchestratorError
+from orchestrator.fmi.unpack import private_folder
 from orchestrator.ssp.archive import parsed, schema_fault
+from orchestrator.terrain.hand_over import MAP
 
 ROOT = Path(__file__).resolve().parents[2]
 APOLLO = ROOT / "scenarios" / "apollo11_zupp.toml"
@@ -48,10 +50,19 @@ def test_a_changed_parameter_solves_the_start_condition_again(tmp_path: Path) ->
 @built
 def test_nothing_in_the_file_points_at_this_machine(tmp_path: Path) -> None:
     ssp = exported(ROOT / "scenarios" / "apollo11_dem.toml", tmp_path / "dem.ssp")
-    assert str(ROOT).encode() not in etree.tostring(description(ssp))
+    text = etree.tostring(description(ssp))
+    assert str(ROOT).encode() not in text
+    assert str(private_folder()).encode() not in text
+    given = next(path for (unit, name), path in _given(ssp).items() if name == MAP and unit == "soil+Y")
+    assert given.startswith("resources/")                     # for tools that know no [terrain]
     ground = read_scenario(ssp).table.terrain
     assert ground is not None
     assert Path(ground.file or "").read_bytes() == (ROOT / "scenarios" / "terrain" / "site.npy").read_bytes()
+    unpacked = draw_up(read_scenario(ssp), ssp)
+    heights = {Path(str(values[MAP])) for values in unpacked.values if MAP in values}
+    assert len(heights) == 1
+    assert next(iter(heights)).is_file()
+    assert next(iter(heights)).parent != private_folder()
 
 
 def _given(ssp: Path) -> dict[tuple[str, str], str]:

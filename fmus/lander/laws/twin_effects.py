@@ -93,9 +93,10 @@ def next_corner(effects: Effects, contact: float, now: float, end: float) -> flo
             corner = contact + effects.tail.corners[k, 0]
             if corner > now + ALIKE:
                 end = min(end, corner)
-    for edge in (effects.pulse.start, effects.pulse.start + effects.pulse.duration):
-        if edge > now + ALIKE:
-            end = min(end, edge)
+    if effects.pulse.torque != ZERO:  # a step that ends where nothing happens would move the landing by the integrator's error
+        for edge in (effects.pulse.start, effects.pulse.start + effects.pulse.duration):
+            if edge > now + ALIKE:
+                end = min(end, edge)
     return end
 
 

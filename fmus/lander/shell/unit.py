@@ -251,11 +251,13 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
 
     def prepare_again(self, state: Saved) -> None:
         """Prepare for the parameters of a restored state; on error no step is done from it."""
+        self.prepared = None
         try:
             self.prepare()
         except Exception as error:
             self.stepping = False
             self.report(f"the state restored: {reason(error)}", Fmi2Status.error)
+            return
         self.prepared = state.prepared = state.prepared or object()
 
     @staticmethod

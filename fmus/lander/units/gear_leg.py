@@ -196,12 +196,7 @@ class GearLeg(Unit):
         return {"pad.force": (6000.0 * share, 900.0 * share, -600.0 * share)}
 
     def check(self) -> Iterable[str]:
-        for strut in ("primary", "tension"):
-            if not self.value(f"{strut}_boundary") < self.value(f"{strut}_limit"):
-                yield (
-                    f"{strut}_boundary is {self.value(f'{strut}_boundary'):g} m, "
-                    f"expects less than {strut}_limit, {self.value(f'{strut}_limit'):g} m"
-                )
+        yield from stages_past_limits(self)
 
     def prepare(self) -> None:
         self.leg = leg_of(self, self.value("azimuth"), self.value("vehicle_mass"))
@@ -232,6 +227,14 @@ class GearLeg(Unit):
                 "a shorter interval may do"
             )
         self["bottomed"] = float(done == BOTTOMED)
+
+
+def stages_past_limits(unit: Unit) -> Iterable[str]:
+    """What is wrong with a unit's cartridges: the first stage must end before the stroke does."""
+    for strut in ("primary", "tension"):
+        boundary, limit = unit.value(f"{strut}_boundary"), unit.value(f"{strut}_limit")
+        if not boundary < limit:
+            yield f"{strut}_boundary is {boundary:g} m, expects less than {strut}_limit, {limit:g} m"
 
 
 def geometry_of(unit: Unit, azimuth: float) -> LegGeometry:

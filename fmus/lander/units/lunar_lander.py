@@ -71,6 +71,7 @@ def leg_outputs(k: int) -> tuple[Record, ...]:
     )
 
 
+NOT_A_GEARS = ("azimuth", "gravity", "vehicle_mass", "longest_substep", "stroke_rate_start")
 NOT_A_SOILS = ("footpad_radius", "footpad_height", "longest_substep", *(record.name for record in _terrain.TERRAIN))
 ENGINE = ("engine.force", "engine.force_added", "engine.torque", "engine.torque_added")
 
@@ -101,7 +102,7 @@ class LunarLander(Unit):
     initially = ENGINE
     variables = (
         *parameters_of(vehicle_body.VehicleBody.variables, ()),
-        *parameters_of(gear_leg.GearLeg.variables, ("azimuth", "gravity", "vehicle_mass", "longest_substep")),
+        *parameters_of(gear_leg.GearLeg.variables, NOT_A_GEARS),
         parameter("azimuth", (0.0, 0.5 * pi, pi, -0.5 * pi), "rad", "of legs 1 to 4 about B's x axis, from +Z to +Y"),
         *(
             for_each_soil(record)
@@ -154,7 +155,10 @@ class LunarLander(Unit):
         return {"engine.force": (5000.0, 0.0, 0.0)}
 
     def check(self) -> Iterable[str]:
+        yield from vehicle_body.inertia_of_no_body(self)
+        yield from gear_leg.stages_past_limits(self)
         yield from guidance_control.falling_times(self, "guidance.")
+        yield from regolith_contact.begun_too_early(self)
 
     def prepare(self) -> None:
         body = Body(self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity"))

@@ -1,5 +1,6 @@
 """RegolithContact: the soil under one footpad."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from ..laws.footpad import COLUMNS, POINTS, Footpad
@@ -117,6 +118,9 @@ class RegolithContact(Unit):
         """A pad pushed into the soil at a given speed, sliding."""
         return {"pad.position": (0.105 - 0.4 * time, 0.2 * time, 0.0), "pad.velocity": (-0.4, 0.2, 0.0)}
 
+    def check(self) -> Iterable[str]:
+        yield from begun_too_early(self)
+
     def prepare(self) -> None:
         self.soil, plane = soil_of(self)
         self.surface = plane._replace(relief=relief_of(self))
@@ -162,6 +166,12 @@ class RegolithContact(Unit):
         self["contact"] = float(touching)
         if touching and self.value("contact_time") < 0.0:
             self["contact_time"] = time
+
+
+def begun_too_early(unit: Unit) -> Iterable[str]:
+    """What is wrong with a unit's start time: an instant below zero would say that there was no contact yet."""
+    if unit.start_time < 0.0:
+        yield f"the run begins at {unit.start_time:g} s, expects 0 s or later: a contact_time below 0 means none yet"
 
 
 def soil_of(unit: Unit, prefix: str = "", element: int = 0) -> tuple[Soil, Surface]:

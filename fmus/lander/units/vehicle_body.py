@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 LEGS = tuple(f"leg{k}" for k in range(1, 9))
 PORTS = (*LEGS, "engine", *(f"effect{k}" for k in range(1, 5)))
 LONGEST = 1e-3  # s, Runge-Kutta step: its error per step is below 1e-12 of the motion at rates of 1 rad/s
+ROUNDING = 1e-12  # of a sum of principal moments: a flat body has the largest equal to it
 UNLOADED = BodyLoad(ZERO, ZERO, ZERO, ZERO)
 
 
@@ -103,10 +104,7 @@ class VehicleBody(Unit):
         }
 
     def check(self) -> Iterable[str]:
-        x, y, z = self["inertia"]
-        for name, largest, rest in (("Ixx", x, y + z), ("Iyy", y, x + z), ("Izz", z, x + y)):
-            if largest > rest:
-                yield f"inertia: {name} is {largest:g} kg.m2, expects at most the sum of the other two, {rest:g} kg.m2"
+        yield from inertia_of_no_body(self)
 
     def prepare(self) -> None:
         inertia = inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"]))
@@ -135,6 +133,16 @@ class VehicleBody(Unit):
 
     def advance(self, time: float, step: float) -> None:
         advance_body(self.body, LONGEST, step, *self.inputs, *self.outputs)
+
+
+def inertia_of_no_body(unit: Unit) -> Iterable[str]:
+    """What is wrong with a unit's `inertia` and `inertia_products`: no body has a principal moment beyond the sum of the other two."""
+    least, middle, largest = np.linalg.eigvalsh(inertia_matrix(triple(unit["inertia"]), triple(unit["inertia_products"]))).tolist()
+    if not (least > 0.0 and largest <= (least + middle) * (1.0 + ROUNDING)):
+        yield (
+            f"inertia and inertia_products: the principal moments are {least:g}, {middle:g} and {largest:g} kg.m2, "
+            "expects each more than 0 and at most the sum of the other two"
+        )
 
 
 def triple(view: Array) -> Vector:
