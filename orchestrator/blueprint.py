@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
 
 from orchestrator.errors import SspError
@@ -44,6 +45,8 @@ class Blueprint:
     """How many links each connection came to."""
     bounds: list[Bound] = field(default_factory=list)
     """Conditions of an early end."""
+    sha256: str | None = None
+    """Of the scenario's file."""
 
 
 def read_scenario(path: Path, overrides: Sequence[str] = (), changes: Tree | None = None, variant: str = "") -> Scenario:
@@ -82,5 +85,14 @@ def draw_up(scenario: Scenario, path: Path | None = None) -> Blueprint:
         if bound.output not in recorded[bound.unit]:
             recorded[bound.unit].append(bound.output)
     return Blueprint(
-        scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located, wiring.derived, wiring.made, bounds
-    )
+        scenario, path, interfaces, wiring.links, wiring.pairs, values, recorded, zero, located, wiring.derived, wiring.made, bounds,
+        _digest(path),
+    )  # fmt: skip
+
+
+def _digest(path: Path | None) -> str | None:
+    """None where there is no file, or no longer."""
+    try:
+        return None if path is None else sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None

@@ -115,11 +115,10 @@ class Simulation:
         """Where somebody takes what there is of a run when a unit hangs, he takes it when one crashes, too."""
 
         def say(signal: str) -> None:
-            accused = self.master.watchdog.accused(signal)
-            if accused and self.master.watchdog.on_hang is not None:
+            accused = self.master.watchdog.accused(signal) or f"{FmuUnit.called} ({signal}); mend the unit"
+            if self.master.watchdog.on_hang is not None:
                 self.master.watchdog.on_hang(accused)
-            starting = f"{FmuUnit.starting}: crashed while it was initialised ({signal}); mend the unit"
-            sys.stderr.write(f"error: {accused or starting}\n")
+            sys.stderr.write(f"error: {accused}\n")
             sys.stderr.flush()
             os._exit(RunError.exit_code)
 
@@ -191,6 +190,7 @@ class Simulation:
             title=table.title,
             scenario=scenario.as_run(),
             scenario_path=self.blueprint.path,
+            scenario_sha256=self.blueprint.sha256,
             start_time=table.start_time,
             stop_time=table.stop_time,
             times=master.recorder.times,

@@ -35,8 +35,8 @@ class FmuUnit(ABC):
     counted: ClassVar[bool]
     """Whether gets and sets are told the number of values."""
 
-    starting: ClassVar[str] = ""
-    """The unit that was last called to be initialised, whichever it was."""
+    called: ClassVar[str] = ""
+    """The unit that was last called, whichever it was, and for what; a doStep is not noted here, the master's watchdog knows of it."""
 
     def __init__(self, name: str, path: Path, interface: Interface | None = None) -> None:
         self.name = name
@@ -101,7 +101,7 @@ class FmuUnit(ABC):
         self._start_blocks()
 
     def set_up(self, start: float, stop: float, values: Mapping[str, Value]) -> None:
-        FmuUnit.starting = self.name
+        self._note("it was initialised")
         self._free_slot()
         if self._used:
             self._check("reset", self._function("Reset")(self._component))
@@ -117,13 +117,13 @@ class FmuUnit(ABC):
         self._make(self._start_calls(values))
 
     def exchange(self) -> None:
-        FmuUnit.starting = self.name
+        self._note("it was initialised")
         self._send()
         self._fetch()
         self._observe()
 
     def begin(self) -> None:
-        FmuUnit.starting = self.name
+        self._note("it was initialised")
         self._send()
         self._check("exitInitializationMode", self._function("ExitInitializationMode")(self._component))
         self._begun = True
@@ -142,11 +142,13 @@ class FmuUnit(ABC):
 
     def observe(self) -> None:
         entered = perf_counter()
+        self._note("its outputs were read")
         self._observe()
         self.seconds += perf_counter() - entered
 
     def save(self) -> None:
         entered = perf_counter()
+        self._note("its state was saved")
         # Freed first: passing the old slot for reuse is allowed, but runtimes exist that leak it.
         self._free_slot()
         self._check(f"get{self.state}", self._function(f"Get{self.state}")(self._component, ctypes.byref(self._slot)))
@@ -154,11 +156,13 @@ class FmuUnit(ABC):
 
     def restore(self) -> None:
         entered = perf_counter()
+        self._note("its state was restored")
         self._check(f"set{self.state}", self._function(f"Set{self.state}")(self._component, self._slot))
         self.seconds += perf_counter() - entered
 
     def serialised_state(self) -> bytes:
         """The kept state as bytes, where the unit can serialise."""
+        self._note("its state was serialised")
         size, what = ctypes.c_size_t(0), f"Serialized{self.state}Size"
         self._check(what, self._function(what)(self._component, self._slot, ctypes.byref(size)))
         buffer = ctypes.create_string_buffer(size.value)
@@ -168,6 +172,7 @@ class FmuUnit(ABC):
 
     def adopt_state(self, data: bytes) -> None:
         """Put serialised bytes into the slot; `restore` then goes there."""
+        self._note("its state was deserialised")
         self._free_slot()
         what = f"{self.deserialize}{self.state}"
         buffer = ctypes.create_string_buffer(data, len(data))
@@ -193,6 +198,9 @@ class FmuUnit(ABC):
         if self._slot:
             self._check(f"free{self.state}", self._function(f"Free{self.state}")(self._component, ctypes.byref(self._slot)))
             self._slot = ctypes.c_void_p(None)
+
+    def _note(self, what: str) -> None:
+        FmuUnit.called = f"{self.name}: crashed while {what}"
 
     def _variables(self, names: Sequence[str]) -> list[Variable]:
         return [self.interface.variables[name] for name in names]

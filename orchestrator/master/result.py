@@ -124,6 +124,8 @@ class RunResult:
     scenario: dict[str, Any]
     """The scenario as run: overlays merged, `--set` applied, `each` expanded."""
     scenario_path: Path | None
+    scenario_sha256: str | None
+    """Of the file when the run was drawn up; it may have been edited since."""
     start_time: float
     stop_time: float
     """As asked, s; the run reached times[-1]."""

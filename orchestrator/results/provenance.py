@@ -6,7 +6,6 @@ import re
 import subprocess
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from hashlib import sha256
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -41,7 +40,7 @@ def write_inputs(result: RunResult, path: Path) -> Path:
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "scenario": result.scenario_path.name if result.scenario_path else None,
         "variant": result.variant or None,
-        "scenario_sha256": _hash_of(result.scenario_path),
+        "scenario_sha256": result.scenario_sha256,
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
         "packages": package_versions(),
@@ -50,14 +49,6 @@ def write_inputs(result: RunResult, path: Path) -> Path:
     }
     path.write_text(json.dumps(_plain(inputs), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
     return path
-
-
-def _hash_of(path: Path | None) -> str | None:
-    """None where the file has gone since the run began."""
-    try:
-        return None if path is None else sha256(path.read_bytes()).hexdigest()
-    except OSError:
-        return None
 
 
 def package_versions() -> dict[str, str]:

@@ -8,8 +8,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples" / "c_units"))
 from c_library import compile_library, pack
 
-VARIABLES = ("u", "x", "wall", "hang_from", "error_from", "nan_from", "fatal_from", "crash_from")
-"""x' = 1 + u. Discards at each multiple of `wall`, having stepped up to it; hangs, or fails, from a time on."""
+VARIABLES = ("u", "x", "wall", "hang_from", "error_from", "nan_from", "fatal_from", "crash_from", "save_crash_from")
+"""x' = 1 + u. Discards at each multiple of `wall`, having stepped up to it; hangs, or fails, from a time on, or crashes when saved."""
 
 SOURCE = r"""
 #include <math.h>
@@ -17,7 +17,7 @@ SOURCE = r"""
 #include <string.h>
 #include "fmi2Functions.h"
 
-typedef struct { double v[8]; double reached; } Unit;
+typedef struct { double v[9]; double reached; } Unit;
 
 const char* fmi2GetTypesPlatform(void) { return "default"; }
 const char* fmi2GetVersion(void) { return "2.0"; }
@@ -25,7 +25,7 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String where, const fmi2CallbackFunctions* f,
                               fmi2Boolean visible, fmi2Boolean log) {
     Unit* m = calloc(1, sizeof(Unit));
-    for (int i = 2; i < 8; i++) m->v[i] = 1e9;
+    for (int i = 2; i < 9; i++) m->v[i] = 1e9;
     return m;
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }
@@ -35,7 +35,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return fmi2OK; }
 fmi2Status fmi2Terminate(fmi2Component c) { return fmi2OK; }
 fmi2Status fmi2Reset(fmi2Component c) {
     memset(c, 0, sizeof(Unit));
-    for (int i = 2; i < 8; i++) ((Unit*)c)->v[i] = 1e9;
+    for (int i = 2; i < 9; i++) ((Unit*)c)->v[i] = 1e9;
     return fmi2OK;
 }
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real x[]) {
@@ -47,6 +47,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, 
     return fmi2OK;
 }
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* s) {
+    if (((Unit*)c)->reached >= ((Unit*)c)->v[8]) *(volatile int*)0 = 1;
     if (!*s) *s = malloc(sizeof(Unit));
     memcpy(*s, c, sizeof(Unit));
     return fmi2OK;

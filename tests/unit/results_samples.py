@@ -74,6 +74,7 @@ def landing(rows: int = 1500, **changes: object) -> RunResult:
         "title": "A made-up landing",
         "scenario": {"title": "A made-up landing", "stop_time": 3.0, "results": TABLE, "units": {"body": {"fmu": "VehicleBody"}}},
         "scenario_path": None,
+        "scenario_sha256": None,
         "start_time": 0.0,
         "stop_time": 3.0,
         "times": times,

@@ -3,11 +3,13 @@
 import os
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
 from fmi_c_sample import c_sample
 
+from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.master.result import RunResult
 from orchestrator.simulation import run_scenario
 
@@ -98,6 +100,15 @@ def test_a_crash_at_the_third_step_or_in_the_trial_is_a_line(tmp_path: Path, cra
         assert (out / "history.csv").read_text().splitlines()[-1].startswith(str(last))
 
 
+def test_a_crash_outside_of_dostep_is_a_line_that_names_who_was_called_and_leaves_the_results(tmp_path: Path) -> None:
+    path, out = scenario(tmp_path), tmp_path / "out"
+    command = [sys.executable, *RUN, str(path), "--out", str(out), "--set", "odd.save_crash_from=0.08"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False, env=os.environ)
+    assert done.returncode == 3, done.stderr
+    assert done.stderr == "error: odd: crashed while its state was saved (SIGSEGV); mend the unit\n"
+    assert (out / "history.csv").read_text().splitlines()[-1].startswith("0.08")
+
+
 def test_a_unit_in_a_process_of_its_own_crashes_alone_and_is_named(tmp_path: Path) -> None:
     result = run_scenario(scenario(tmp_path), ["odd.crash_from=0.08"], ALONE)
     assert result.message == "odd: crashed in doStep, its step 3, from t = 0.08 s: its process was ended by SIGSEGV; mend the unit"
@@ -110,3 +121,12 @@ def test_a_unit_in_a_process_of_its_own_does_the_same_to_the_bit(tmp_path: Path)
     assert apart.columns.keys() == beside.columns.keys()
     assert all((column == beside.columns[name]).all() for name, column in apart.columns.items())
     assert [row.limit for row in apart.log] == [row.limit for row in beside.log]
+
+
+def test_a_run_is_known_by_the_scenario_that_was_read_and_not_by_what_was_written_since(tmp_path: Path) -> None:
+    path = scenario(tmp_path)
+    read = sha256(path.read_bytes()).hexdigest()
+    blueprint = draw_up(read_scenario(path), path)
+    path.write_text("# edited\n" + path.read_text())
+    assert blueprint.sha256 == read
+    assert draw_up(read_scenario(path), path).sha256 != read
