@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryFile
 from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,8 +20,9 @@ from orchestrator.campaign.sensitivity_command import sensitivity
 from orchestrator.check.command import check
 from orchestrator.diagnosis.command import diagnose, distinguish
 from orchestrator.doghouse.command import doghouse
-from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError, UserError
+from orchestrator.errors import EXIT_INTERRUPTED, OrchestratorError, RunError
 from orchestrator.host_environment import host_env
+from orchestrator.output_folder import can_take_results
 from orchestrator.scenario.locate import all_scenarios, find_scenario, scenario_folder
 from orchestrator.scenario.read import read_table
 from orchestrator.ssp.command import export
@@ -79,7 +79,7 @@ def run(
     folder = out or Path("results") / (f"{path.stem}-{variant}" if variant else path.stem)
     schedule = None if checkpoint_every is None else Schedule.asked(folder, checkpoint_every)
     simulation = Simulation(draw_up(read_scenario(path, overrides or (), changes, variant), path))
-    _can_take_results(folder)
+    can_take_results(folder)
     if schedule is None:
         clear(folder / FOLDER)
     simulation.on_hang = _leaving(folder, figures, quiet)
@@ -130,16 +130,6 @@ def _report(result: RunResult, folder: Path, figures: bool, quiet: bool) -> None
     error = fault(result)
     if error is not None:
         raise error
-
-
-def _can_take_results(folder: Path) -> None:
-    """Before a run, not after it."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise UserError(f"{folder}: cannot take the results ({error.strerror}); give another --out") from None
 
 
 @contextmanager

@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from orchestrator.errors import EXIT_INTERRUPTED
+from orchestrator.output_folder import can_take_results
 from orchestrator.scenario.locate import find_campaign
 
 
@@ -38,6 +39,7 @@ def campaign(
     if only is not None:
         fly_alone(plan, folder, only, quiet)
         return
+    can_take_results(folder)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
     try:
         with Crew(workers, scheduler) as crew, _bar(plan.table.title or plan.where, quiet) as heard:

@@ -9,6 +9,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from orchestrator.output_folder import can_take_results
+
 _WIDE = 160
 """Columns where the output is no terminal: a finding stays on few lines."""
 
@@ -39,6 +41,8 @@ def check(
 
     if not fmu.is_file():
         raise UnitError(f"{fmu}: no such file; give the path of an FMU")
+    if json_file is not None:
+        can_take_results(json_file.parent, "--json")
     values = given_values(read_interface(fmu), fmu.stem, overrides or ())
     terminal = Console(stderr=True)
     with terminal.status("reading", spinner="dots") if terminal.is_terminal and not quiet else _Silence() as status:

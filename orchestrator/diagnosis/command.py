@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from orchestrator.errors import EXIT_INTERRUPTED
+from orchestrator.output_folder import can_take_results
 from orchestrator.scenario.locate import find_scenario
 
 MeasuredFolders = Annotated[list[Path], typer.Option("--measured", help="Folder of measured data (landing.toml); may be repeated.")]
@@ -23,8 +24,8 @@ def diagnose(
     holdout: Annotated[list[Path] | None, typer.Option(help="Landings kept out of the fit, to judge it by; may be repeated.")] = None,
     effects: Annotated[list[Path] | None, typer.Option(help="Folder of effects of your own, beside the library; may be repeated.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the report (default: results/SCENARIO-diagnosis).")] = None,
-    budget: Annotated[int, typer.Option(help="Landings after which only what the verdict needs is flown.")] = 20000,
-    seed: Annotated[int, typer.Option(min=0, help="Of the draws that fits start from.")] = 0,
+    budget: Annotated[int, typer.Option(help="Landings after which no pairs and no laws outside are tried.")] = 20000,
+    seed: Annotated[int, typer.Option(min=0, help="Of the random draws from the priors that fits start from.")] = 0,
     workers: Annotated[int, typer.Option(min=0, help="Processes; 0: one a core.")] = 0,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="unit.parameter=value; may be repeated.")] = None,
     verdict_only: Annotated[
@@ -41,18 +42,19 @@ def diagnose(
     from orchestrator.diagnosis.diagnose import Request
     from orchestrator.diagnosis.diagnose import diagnose as search
     from orchestrator.diagnosis.outcome import EXIT
-    from orchestrator.diagnosis.present import present
+    from orchestrator.diagnosis.present import clear_earlier, present
     from orchestrator.diagnosis.report import terminal_summary
 
     path = find_scenario(scenario)
     folder = out or Path("results") / f"{path.stem}-diagnosis"
     request = Request(path, measured, holdout or (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or (), budget)
-    folder.mkdir(parents=True, exist_ok=True)
+    can_take_results(folder)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
     try:
         with _stages(quiet) as told:
             diagnosis = search(request, told)
             if verdict_only:
+                clear_earlier(request)
                 diagnosis.outcome.write(folder)
             else:
                 told("proof by co-simulation", "", 0.0)
@@ -86,6 +88,7 @@ def distinguish(
     path = find_scenario(scenario)
     folder = out or Path("results") / f"{path.stem}-distinguish"
     request = Request(path, measured, (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or ())
+    can_take_results(folder)
     with _stages(quiet) as told:
         table, skipped = compare(request, told)
         write_distinction(folder, table)

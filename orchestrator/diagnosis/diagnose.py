@@ -30,7 +30,7 @@ from orchestrator.diagnosis.stages import State, align, judged, promising, run_s
 from orchestrator.diagnosis.terms.find_term import adopt, find_term, forsake
 from orchestrator.diagnosis.terms.found import Found, to_outcome
 from orchestrator.diagnosis.verdict import Judged, Judgement
-from orchestrator.errors import UserError
+from orchestrator.errors import ScenarioError, UserError
 from orchestrator.scenario.locate import scenario_folder
 
 Told = Callable[[str, str, float], None]
@@ -365,7 +365,9 @@ def _faulty(outcome: Outcome, measured: Sequence[Measured]) -> bool:
 
 
 def beside_scenarios(name: str) -> Path:
-    """A file or folder of the project's scenarios folder."""
-    folder = scenario_folder() or Path(__file__).resolve().parents[2] / "scenarios"
-    beside = folder / name
-    return beside if beside.exists() else Path(__file__).resolve().parents[2] / "scenarios" / name
+    """A file or folder of the project's scenarios folder; ScenarioError where there is none."""
+    own = Path(__file__).resolve().parents[2] / "scenarios"
+    for folder in (scenario_folder() or own, own):
+        if (folder / name).exists():
+            return folder / name
+    raise ScenarioError(f"scenarios/{name}: is neither here nor above; change to the project's folder")

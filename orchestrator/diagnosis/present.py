@@ -35,6 +35,8 @@ from orchestrator.errors import OrchestratorError
 from orchestrator.scenario.locate import find_fmu
 
 Array = NDArray[np.float64]
+LEFT = ("report.html", "revised.toml", "landing_*.toml", "before_after.*", "figures/*.png", "courses/*", "found/*")
+"""What a verdict leaves in its folder beside diagnosis.json."""
 
 
 def present(request: Request, diagnosis: Diagnosis) -> None:
@@ -44,6 +46,7 @@ def present(request: Request, diagnosis: Diagnosis) -> None:
     """
     outcome, setup, state = diagnosis.outcome, diagnosis.setup, diagnosis.state
     request.out.mkdir(parents=True, exist_ok=True)
+    clear_earlier(request)
     outcome.write(request.out)
     courses: list[LandingCourses] = []
     failed: OrchestratorError | None = None
@@ -60,6 +63,18 @@ def present(request: Request, diagnosis: Diagnosis) -> None:
     outcome.write(request.out)
     if failed is not None:
         raise type(failed)(f"{failed} (the search's verdict is in {request.out}: {outcome.sentence})") from failed
+
+
+def clear_earlier(request: Request) -> None:
+    """Remove what an earlier verdict left in the request's folder: its revised scenario would stand beside a report that names nothing.
+
+    What this request was given stays: its scenario, and effects in folders below.
+    """
+    given = [request.scenario.resolve(), *(it.resolve() for it in request.effects)]
+    for pattern in LEFT:
+        for path in request.out.glob(pattern):
+            if path.is_file() and not any(path.resolve() == it or path.resolve().is_relative_to(it) for it in given):
+                path.unlink()
 
 
 def chosen(diagnosis: Diagnosis) -> str:

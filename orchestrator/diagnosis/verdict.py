@@ -124,7 +124,8 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
     hypotheses = [h for h in hypotheses if h.stands or not h.laws]
     known, both = {h.name: h for h in hypotheses}, informed(hypotheses, singles)
     found, null = probabilities(both, singles), known[NULL.name]
-    named = credible(both, singles) or credible(hypotheses, singles)
+    of_both = credible(both, singles)
+    named = of_both or credible(hypotheses, singles)
     if not named:
         if null.adequacy < LOST:
             return Judgement(
@@ -132,7 +133,7 @@ def judge(hypotheses: Sequence[Judged], singles: int) -> Judgement:
             )
         return Judgement("nothing_missing", (), found)
     best = known[named[0]]
-    standing = tuple(n for n in named if known[n].stands)
+    standing = tuple(n for n in of_both if known[n].stands)
     if not standing:
         if null.adequacy >= LOST and best.adequacy >= ADEQUATE and best.log_evidence - null.log_evidence < BY_CHANCE:
             return Judgement("nothing_missing", (), found, f"{best.name} fits better, but not on the held-out landing")

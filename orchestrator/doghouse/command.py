@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from orchestrator.errors import EXIT_INTERRUPTED
+from orchestrator.output_folder import can_take_results
 from orchestrator.scenario.locate import find_scenario
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def doghouse(
     path = find_scenario(plan)
     read_plan = read(path)
     folder = out or Path("results") / path.stem
-    folder.mkdir(parents=True, exist_ok=True)
+    can_take_results(folder)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
     try:
         with Crew(workers, scheduler) as crew, _stages(quiet) as heard:

@@ -31,6 +31,8 @@ def find_scenario(text: str) -> Path:
         return path
     if is_path(text) or path.suffix in (".toml", SSP):
         raise ScenarioError(f"{text}: no such file; `orchestrator list` shows the scenarios there are")
+    if scenario_folder() is None:
+        raise ScenarioError(f"{text}: there is no folder `scenarios` here or above; change to the project's folder, or give a file")
     found = [p for p in all_scenarios() if p.stem == text]
     if found:
         return found[0]

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from fmi_samples import oscillator, sample_fmus
 
+ROOT = Path(__file__).resolve().parents[2]
 
 def orchestrator(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "orchestrator", *map(str, arguments)]
@@ -95,6 +96,30 @@ def test_a_place_that_cannot_take_results_is_refused_before_the_run(tmp_path: Pa
     assert done.returncode == 2
     assert "taken: cannot take the results (File exists); give another --out" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "option"),
+    [
+        (("diagnose", "SCENARIO", "--measured", ".", "--out", "taken"), "--out"),
+        (("distinguish", "SCENARIO", "--measured", ".", "--out", "taken"), "--out"),
+        (("campaign", "CAMPAIGN", "--out", "taken"), "--out"),
+        (("check", "SCENARIO", "--json", "taken/check.json"), "--json"),
+    ],
+)
+def test_no_command_flies_for_a_place_that_cannot_take_results(tmp_path: Path, arguments: tuple[str, ...], option: str) -> None:
+    (tmp_path / "taken").write_text("a file\n")
+    places = {"SCENARIO": oscillator(tmp_path), "CAMPAIGN": ROOT / "scenarios" / "campaigns" / "apollo11_scatter.toml"}
+    done = orchestrator(*(places.get(word, word) for word in arguments), cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == f"error: taken: cannot take the results (File exists); give another {option}\n"
+
+
+def test_outside_a_project_a_bare_name_says_where_names_are_looked_for(tmp_path: Path) -> None:
+    done = orchestrator("run", "apollo11_zupp", cwd=tmp_path)
+    assert done.returncode == 2
+    told = "there is no folder `scenarios` here or above; change to the project's folder, or give a file"
+    assert done.stderr == f"error: apollo11_zupp: {told}\n"
 
 
 def test_a_missing_scenario_names_the_nearest(tmp_path: Path) -> None:

@@ -44,6 +44,17 @@ def test_a_verdict_is_written_also_where_the_co_simulation_fails(monkeypatch: py
     assert (tmp_path / "report.html").is_file()
 
 
+def test_what_an_earlier_verdict_left_is_gone_but_not_what_this_one_was_given(tmp_path: Path) -> None:
+    left = ["revised.toml", "landing_1.toml", "report.html", "before_after.csv", "figures/where.png", "courses/fit.csv", "found/term.toml"]
+    kept = [".work/tasks", "notes.txt", "figures/own.svg", "found/deeper/own.toml"]
+    for name in (*left, *kept):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    present.clear_earlier(Request(tmp_path / "landing_1.toml", (), effects=(tmp_path / "found",), out=tmp_path))
+    assert [name for name in left if (tmp_path / name).exists()] == ["landing_1.toml", "found/term.toml"]
+    assert all((tmp_path / name).exists() for name in kept)
+
+
 def test_two_laws_found_at_once_are_both_revised_kept_and_have_their_units(tmp_path: Path) -> None:
     zupp, terms = addresses_of(ZUPP), {term.name: term for term in dictionary()}
     torque, soil = terms["body_Tx_constant"], next(term for term in terms.values() if term.port == "soil.normal" and not term.equals)

@@ -195,3 +195,11 @@ def test_the_held_out_landings_are_asked_of_the_credible_and_of_who_comes_close(
     assert contenders(some, LIBRARY) == ("a", "a + b", "b")
     assert contenders([null(FINE), Judged("a", 2.5, FINE), Judged("b", 0.9, FINE)], LIBRARY) == ("a",)
     assert contenders([null(FINE), Judged("a", 0.9, FINE)], LIBRARY) == ()
+
+
+def test_effects_that_both_landings_together_do_not_ask_for_are_no_answers() -> None:
+    """On the fitted landing alone a and b hold nine tenths; a loses on the held-out one, and nothing missing keeps 0.17 of both."""
+    hypotheses = [null(FINE), Judged("a", 6.6, FINE, -3.0, FINE), Judged("b", 5.2, FINE, 0.1, FINE)]
+    assert set(contenders(hypotheses, LIBRARY)) == {"a", "b"}
+    assert named(*hypotheses) == ("nothing_missing", ())
+    assert named(null(POOR), *hypotheses[1:]) == ("none_of_my_effects", ())

@@ -32,6 +32,10 @@ def terminal_summary(outcome: Outcome, folder: Path | None = None, report: bool 
         parts += [_rivals(outcome), Text()]
     if outcome.where:
         parts += [_where(outcome), Text()]
+    if outcome.faults:
+        parts += [_faults(outcome), Text()]
+    if outcome.cannot_tell.measure:
+        parts += [_measure(outcome), Text()]
     found = "report.html, diagnosis.json, figures, courses" if report else "diagnosis.json"
     parts.append(_facts(outcome, f"{folder / found}" if folder is not None else ""))
     parts += [Text(line, style="yellow") for line in outcome.warnings]
@@ -67,6 +71,21 @@ def _where(outcome: Outcome) -> Table:
         name = f"{window.channel} ({window.landing})" if window.landing else window.channel
         cells = (name, number(window.from_s), number(window.to_s), number(window.sigmas), window.port or window.unit or NONE)
         table.add_row(*(Text(cell) for cell in cells))
+    return table
+
+
+def _faults(outcome: Outcome) -> Table:
+    table = _table("channel", "fault", ">from, s", ">to, s")
+    for fault in outcome.faults[:ROWS]:
+        times = (number(fault[key]) if is_known(fault.get(key)) else NONE for key in ("from_s", "to_s"))
+        table.add_row(*(Text(cell) for cell in (str(fault.get("channel", "")), str(fault.get("what", "")), *times)))
+    return table
+
+
+def _measure(outcome: Outcome) -> Table:
+    table = _table("what would decide", ">to within", "why")
+    for one in outcome.cannot_tell.measure[:ROWS]:
+        table.add_row(*(Text(cell) for cell in (one.channel, words.in_unit_of(one.channel, one.sigma) or NONE, one.reason)))
     return table
 
 

@@ -54,14 +54,14 @@ def caution(outcome: Outcome) -> str:
 def next_step(outcome: Outcome) -> str:
     """What to do now, a sentence before the command (or alone)."""
     another = "or" if outcome.holdout else "give another landing as --holdout, or"
-    law = "the term below" if outcome.term else "the law that you suspect"
+    law = "that term" if outcome.term else "the law that you suspect"
     own = f"Write {law} as an effect into a folder of your own, and search again:"
     return {
         "effect": "Run the revised scenario:",
         "effects": "Run the revised scenario:",
         "nothing_missing": "Nothing to change. To see what a landing like this could show at all:",
-        "cannot_tell": f"Measure what would decide (below), {another} ask which sensor would help:",
-        "none_of_my_effects": "Run the scenario with the term below (in found/ it is an effect):" if outcome.revised_scenario else own,
+        "cannot_tell": f"Measure what would decide, {another} ask which sensor would help:",
+        "none_of_my_effects": "Run the scenario with that term (in found/ it is an effect):" if outcome.revised_scenario else own,
         "numerics": "Make the interval and the tolerance of the scenario smaller, then diagnose again:",
         "data_fault": "Mark or repair the faulty samples, then diagnose again:",
     }[outcome.verdict]
@@ -122,8 +122,15 @@ def _cannot_tell(outcome: Outcome) -> str:
     told = "its candidates apart" if not names else f"whether it is {names[0]}"
     if len(names) > 1:
         told = f"{names[0]} from {listed(names[1:], 'or')}"
-    first = [f": measure {m.channel}{_within(m.channel, m.sigma)}" for m in outcome.cannot_tell.measure[:1]]
-    return f"{sure}These data cannot tell {told}{''.join(first)}."
+    return f"{sure}These data cannot tell {told}{_to_measure(outcome)}."
+
+
+def _to_measure(outcome: Outcome) -> str:
+    if not outcome.cannot_tell.measure:
+        return ""
+    first = outcome.cannot_tell.measure[0]
+    size = in_unit_of(first.channel, first.sigma)
+    return f": measure {first.channel}{f' to within {size}' if size else ''}"
 
 
 def in_every_pair(outcome: Outcome) -> list[str]:
@@ -141,12 +148,12 @@ def undecided(outcome: Outcome) -> list[str]:
     return [" with ".join(inside(title_of(outcome, name)) for name in parts if name not in common) for parts in answers]
 
 
-def _within(channel: str, sigma: float) -> str:
-    """Of a sigma in SI, in the unit of the channel's kind."""
+def in_unit_of(channel: str, sigma: float) -> str:
+    """A sigma in SI with its unit, in the unit that is shown of the channel's kind; empty where it is not known."""
     if not isfinite(sigma):
         return ""
     unit, factor = shown_unit(unit_of(channel))
-    return f" to within {number(factor * sigma, 2)} {spelt(unit)}".rstrip()
+    return f"{number(factor * sigma, 2)} {spelt(unit)}".rstrip()
 
 
 def unit_of(channel: str) -> str:
@@ -164,7 +171,7 @@ def _outside(outcome: Outcome) -> str:
 def _fault(outcome: Outcome) -> str:
     if not outcome.faults:
         return "The data are at fault."
-    more = f" ({len(outcome.faults) - 1} more below)" if len(outcome.faults) > 1 else ""
+    more = f" ({len(outcome.faults) - 1} more)" if len(outcome.faults) > 1 else ""
     first = outcome.faults[0]
     return f"The data are at fault: {first.get('channel', '')} {first.get('what', '')}".rstrip() + f"{more}."
 
