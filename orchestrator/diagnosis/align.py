@@ -6,13 +6,15 @@ the time, and a swap must be glaring.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import reduce
 from itertools import permutations, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.landing import Course
-from orchestrator.diagnosis.observation import Observation, sampled
+from orchestrator.diagnosis.observation import Observation, Track, sampled
 
 Array = NDArray[np.float64]
 STEP = 0.01  # s, of the clocks tried
@@ -26,7 +28,7 @@ EXACT = 0.05  # of it: a swap that fits within the floor as well needs less of a
 def first_contact(observation: Observation, course: Course) -> float:
     """s, the data's time of first contact. Zero where the data's clock fits as it is."""
     if not observation.tracks:
-        return 0.0
+        return _by_contacts(observation, course)
     first = min(t.times[0] for t in observation.tracks if len(t.times))
     last = max(t.times[-1] for t in observation.tracks if len(t.times))
     end = float(course.times[-1])
@@ -38,6 +40,14 @@ def first_contact(observation: Observation, course: Course) -> float:
     if first < end and (abs(float(shifts[best])) < NEAR or costs[best] > CLEAR * at_zero):
         return 0.0
     return float(shifts[best])
+
+
+def _by_contacts(observation: Observation, course: Course) -> float:
+    """The same from readings at rest alone: what the instants of contact among them say."""
+    seen = [(r.value, course.final.get(r.column, -1.0)) for r in observation.readings if r.kind == "time"]
+    late = [there - here for there, here in seen if np.isfinite(there) and here >= 0.0]
+    shift = float(np.median(late)) if late else 0.0
+    return shift if abs(shift) >= NEAR else 0.0
 
 
 def _misfit(observation: Observation, course: Course, shift: float) -> float:
@@ -60,13 +70,13 @@ def _misfit(observation: Observation, course: Course, shift: float) -> float:
 
 def swapped(observation: Observation, course: Course) -> str:
     """What is wrong with the axes of a series, if another order or other signs fit very much better; else nothing."""
-    for series, places in observation.series.items():
-        tracks = [observation.tracks[i] for i in places if len(observation.tracks[i].times)]
-        if len(tracks) != 3 or any(len(t.times) != len(tracks[0].times) for t in tracks):
+    for series, tracks in _axes(observation):
+        shared = reduce(np.intersect1d, [track.times for track in tracks])
+        if not len(shared):
             continue
-        model = np.column_stack([sampled(course, t.column, t.times - observation.shift) for t in tracks])
-        data = np.column_stack([t.readings for t in tracks])
-        scale = np.hypot(tracks[0].sigma, 0.5 * FLOOR * np.ptp(data))
+        model = np.column_stack([sampled(course, t.column, shared - observation.shift) for t in tracks])
+        data = np.column_stack([t.readings[np.isin(t.times, shared)] for t in tracks])
+        scale = np.hypot(max(t.sigma for t in tracks), 0.5 * FLOOR * np.ptp(data))
         costs = {}
         for order in permutations(range(3)):
             for signs in product((1.0, -1.0), repeat=3):
@@ -81,3 +91,13 @@ def swapped(observation: Observation, course: Course) -> str:
                 f"series {series}: fits {as_read / costs[best]:.0f} times better read as {', '.join(turned)} in place of {', '.join(names)}"
             )
     return ""
+
+
+def _axes(observation: Observation) -> Iterator[tuple[str, list[Track]]]:
+    """Series → its three tracks about the three axes, of rates or of angles; other channels have no axes that could be swapped."""
+    for series, places in observation.series.items():
+        for prefix in ("rates.", "attitude."):
+            own = [observation.tracks[i] for i in places]
+            tracks = [track for track in own if track.channel.startswith(prefix) and len(track.times)]
+            if len(tracks) == 3:
+                yield series, tracks

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from orchestrator.errors import EXIT_INTERRUPTED
+from orchestrator.errors import EXIT_INTERRUPTED, UserError
 from orchestrator.output_folder import can_take_results
 from orchestrator.scenario.locate import find_scenario
 
@@ -48,6 +48,8 @@ def diagnose(
     path = find_scenario(scenario)
     folder = out or Path("results") / f"{path.stem}-diagnosis"
     request = Request(path, measured, holdout or (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or (), budget)
+    if path.resolve().parent == folder.resolve() and (path.name == "revised.toml" or path.match("landing_*.toml")):
+        raise UserError(f"{path}: would be written over by its own diagnosis; give another --out")
     can_take_results(folder)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
     try:

@@ -20,8 +20,9 @@ from orchestrator.diagnosis.hypothesis import NULL, parts_of
 from orchestrator.diagnosis.locate import located
 from orchestrator.diagnosis.measured import faults, read_measured
 from orchestrator.diagnosis.measured.landing import Measured
-from orchestrator.diagnosis.origin import flown_otherwise, flown_units, provenance
+from orchestrator.diagnosis.origin import code, flown_otherwise, flown_units, provenance
 from orchestrator.diagnosis.outcome import Candidate, CannotTell, Estimate, Gap, NamedEffect, Outcome
+from orchestrator.diagnosis.recorded import contact_columns
 from orchestrator.diagnosis.report import verdict_sentence as sentence
 from orchestrator.diagnosis.search import UnflyableError
 from orchestrator.diagnosis.setup import Setup, names_of, set_up
@@ -100,13 +101,13 @@ def diagnose(request: Request, told: Told | None = None) -> Diagnosis:
     outcome.warnings += [f"effect {name} is left out: {why}" for name, why in setup.skipped.items()]
     if setup.why_slow:
         outcome.warnings.append(f"searched through the master, with {len(setup.hypotheses)} effects: {setup.why_slow}")
-    if _faulty(outcome, [*measured, *held]):
-        return Diagnosis(outcome, setup, effects=effects)
     units = flown_units(setup.addresses)
     told_besides = {"seed": request.seed, "budget": request.budget, "set": list(request.overrides)}
     outcome.provenance = provenance(request.scenario, [*request.measured, *request.holdout], units, told_besides)
+    if _faulty(outcome, [*measured, *held]):
+        return Diagnosis(outcome, setup, effects=effects)
     slow = flown_otherwise(setup.addresses, request.scenario, request.overrides) if setup.why_slow else ""
-    crew = Crew(setup.make, request.workers, Store(request.out / ".work", units, slow))
+    crew = Crew(setup.make, request.workers, Store(request.out / ".work", units, code() + slow))
     try:
         kept_out = set_up(blueprint, held, {}, tolerances, request.overrides, names[len(measured) :]) if held else None
         return _searched(request, setup, kept_out, crew, outcome, effects, told, began)
@@ -148,7 +149,10 @@ def _searched(
         raise _unflyable(request, held or setup) from None
     diagnosis.judgement = judgement
     if judgement.verdict == "none_of_my_effects" and diagnosis.found is None and crew.flown < request.budget:
-        _look_outside(request, diagnosis, crew, told)
+        try:
+            _look_outside(request, diagnosis, crew, told)
+        except UnflyableError:
+            raise _unflyable(request, held or setup) from None
     fill(diagnosis, verdicts, judgement)
     outcome.simulations = crew.flown
     outcome.seconds = perf_counter() - began
@@ -265,9 +269,10 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
     ranked = sorted(known, key=lambda n: -judgement.probabilities[n])
     outcome.candidates = [_candidate(diagnosis, known[n], judgement) for n in ranked[:SHOWN]]
     best = diagnosis.found.fit if diagnosis.found else state.fits[ranked[0]]
+    adopted = null if judgement.verdict == "nothing_missing" else best
     if judgement.verdict in ("effect", "effects"):
         whole = next(n for n in ranked if set(parts_of(n)) == set(judgement.names))
-        best = state.fits[whole]
+        adopted = best = state.fits[whole]
         outcome.effects = [_named(diagnosis, n, whole, judgement.probabilities[whole]) for n in judgement.names]
     if judgement.verdict == "cannot_tell":
         tracks = measures_between(state, judgement.answers)
@@ -280,15 +285,14 @@ def fill(diagnosis: Diagnosis, verdicts: Sequence[Judged], judgement: Judgement)
     several = len(setup.names) > 1
     outcome.where = located(null, setup.landings, close, ports, setup.names if several else ())
     _fill_gap(diagnosis, best, ranked)
-    _fill_nuisances(outcome, best, state)
+    _fill_nuisances(outcome, adopted, state)
     for k, observation in enumerate(setup.landings.observations):
         for track, noise in zip(observation.tracks, observation.noises, strict=True):
             channel = f"{track.channel} ({k + 1})" if several else track.channel
             outcome.noise[channel] = {"stated": track.sigma, "used": noise.sigma, "colour": noise.rho}
     if state.courses:
-        outcome.events = {
-            f"contact {leg}": state.courses[0].final[f"soil{k}.contact_time"] for k, leg in enumerate(("+Z", "+Y", "-Z", "-Y"), 1)
-        }
+        touched = {leg: state.courses[0].final[name] for leg, name in contact_columns(setup.addresses).items()}
+        outcome.events = {f"contact {leg}": time for leg, time in touched.items() if time >= 0.0}
 
 
 def _fill_gap(diagnosis: Diagnosis, best: Fit, ranked: Sequence[str]) -> None:
@@ -298,7 +302,8 @@ def _fill_gap(diagnosis: Diagnosis, best: Fit, ranked: Sequence[str]) -> None:
     n, null = setup.landings.size, state.fits[NULL.name]
     gap = Gap(float(np.sqrt(null.chi2 / n)), float(np.sqrt(best.chi2 / n)))
     before, after, count = null.chi2, best.chi2, n
-    held, chosen = diagnosis.held, next((x for x in ranked if state.fits[x] is best), "")
+    held = diagnosis.held
+    chosen = diagnosis.found.name if diagnosis.found else next((x for x in ranked if state.fits[x] is best), "")
     if held is not None and chosen in diagnosis.holdout_fits:
         count = held.landings.size
         before, after = diagnosis.holdout_fits[NULL.name].chi2, diagnosis.holdout_fits[chosen].chi2

@@ -16,7 +16,7 @@ from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.landing import RATES, SPIN, TELEMETRY, Course
 from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.overlay import overlay, slot_of_unit
-from orchestrator.diagnosis.recorded import cosimulation_column
+from orchestrator.diagnosis.recorded import contact_columns, cosimulation_column
 from orchestrator.errors import OrchestratorError, UnitError
 from orchestrator.loaded_units import LoadedUnits
 from orchestrator.master.result import RunResult
@@ -112,7 +112,8 @@ def with_values(drawn: Blueprint, values: Mapping[str, float]) -> Blueprint:
 def needed_columns(addresses: Addresses, names: Sequence[str]) -> list[str]:
     """What must be recorded for a course with these columns and final values."""
     wanted = [*RATES, *SPIN, *TELEMETRY, *(name.removeprefix(PEAK) for name in names)]
-    return list(dict.fromkeys(cosimulation_column(addresses, name) for name in wanted))
+    dated = [] if begins_at_contact(addresses) else contact_columns(addresses).values()
+    return list(dict.fromkeys(cosimulation_column(addresses, name) for name in (*wanted, *dated)))
 
 
 def also_record(blueprint: Blueprint, columns: Sequence[str]) -> None:
@@ -134,11 +135,18 @@ def course_of(addresses: Addresses, result: RunResult, columns: Sequence[str], f
     return Course(result.times - contact, rows, {name: _final(addresses, result, name, contact) for name in final})
 
 
+def begins_at_contact(addresses: Addresses) -> bool:
+    """Whether the start condition puts the lowest pad at the ground."""
+    start = addresses.blueprint.scenario.table.start
+    return start is not None and start.value == 0.0
+
+
 def first_contact(addresses: Addresses, result: RunResult) -> float:
-    """s. A scenario that solves its start begins there; else the soils tell."""
-    if addresses.blueprint.scenario.table.start is not None:
+    """s. A scenario that solves its start for contact begins there; else the soils tell."""
+    if begins_at_contact(addresses):
         return result.start_time
-    times = [result.columns.get(f"{legs.soil}.contact_time", np.array([-1.0]))[-1] for legs in addresses.results.legs.values()]
+    columns = [cosimulation_column(addresses, name) for name in contact_columns(addresses).values()]
+    times = [result.columns.get(column, np.array([-1.0]))[-1] for column in columns]
     return float(min((time for time in times if time >= 0.0), default=result.start_time))
 
 

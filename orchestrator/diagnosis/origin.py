@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,12 @@ def flown_otherwise(addresses: Addresses, scenario: Path, overrides: Sequence[st
     files = [path for text in texts for path in (Path(text), scenario.parent / text) if text and path.is_file()]
     said = "\n".join([scenario_text(read_table(scenario)), *overrides, *texts])
     return _hash(said.encode(), *(path.read_bytes() for path in files))
+
+
+def code() -> str:
+    """Of the search itself and of the arithmetic below it: what an earlier version flew or fitted is not to be taken for its own."""
+    package = Path(__file__).resolve().parents[1]
+    return _hash(*(path.read_bytes() for path in sorted(package.rglob("*.py"))), version("numpy").encode(), version("scipy").encode())
 
 
 def provenance(scenario: Path, data: Sequence[Path], units: Sequence[Path], settings: Mapping[str, Any]) -> dict[str, Any]:

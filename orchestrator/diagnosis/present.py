@@ -23,11 +23,12 @@ from orchestrator.diagnosis.places import PLACES
 from orchestrator.diagnosis.problem import Model, Nobody
 from orchestrator.diagnosis.proof import NULL as BEFORE
 from orchestrator.diagnosis.proof import WINNER, Observed, Proof, prove
+from orchestrator.diagnosis.recorded import contact_columns
 from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses, RestValue, verdict_sentence, write_report
 from orchestrator.diagnosis.report.words import unit_of
 from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup
-from orchestrator.diagnosis.stages import CONTACTS, look
+from orchestrator.diagnosis.stages import look
 from orchestrator.diagnosis.tasks.predict import Predict
 from orchestrator.diagnosis.term_fmu import build_term_fmu
 from orchestrator.diagnosis.terms.found import Found, as_term
@@ -213,9 +214,11 @@ def _landing(
 ) -> LandingCourses | None:
     """raw: prediction of the scenario as it stands, of all landings; NaN where one of them cannot be flown."""
     observation, name = setup.landings.observations[k], setup.names[k]
-    first = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k, CONTACTS)
-    fitted = look(setup, crew, null.coordinates, null.z, k, CONTACTS)
-    then = look(setup, crew, after.coordinates, after.z, k, CONTACTS) if after is not None else None
+    touched = contact_columns(setup.addresses)
+    final = tuple(touched.values())
+    first = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k, final)
+    fitted = look(setup, crew, null.coordinates, null.z, k, final)
+    then = look(setup, crew, after.coordinates, after.z, k, final) if after is not None else None
     if first is None or fitted is None:
         return None
     proven = {it.belief: it.predicted for it in (proof.flown if proof else []) if it.landing == name and it.holdout == (kind == "holdout")}
@@ -229,11 +232,7 @@ def _landing(
     rest = [_rest(observation, i, raw[part], before, improved) for i in range(len(observation.readings))]
     shown, seen = next((course, seen) for course, seen in reversed(sides) if course is not None)
     contact = observation.shift + seen.get(ORIGIN, 0.0)
-    contacts = [
-        Contact(leg, shown.final[c] + contact)
-        for leg, c in zip(("+Z", "+Y", "-Z", "-Y"), CONTACTS, strict=True)
-        if shown.final[c] >= 0.0
-    ]
+    contacts = [Contact(leg, shown.final[c] + contact) for leg, c in touched.items() if shown.final[c] >= 0.0]
     return LandingCourses(name, "holdout" if kind == "holdout" else "fit", channels, rest, contacts, shift=observation.shift)
 
 

@@ -160,8 +160,8 @@ class Model:
         values = self.values(z, k)
         nominal = beside[k] if beside is not None and self.lander.varies and observation.dated_alike(values, beside[k]) else None
         grid = observation.grid(self.landings.stop[k], values if nominal is None else nominal, self.horizon + further)
-        asked = {**base, **of_units(values)}, grid, observation.columns, observation.final
-        course = self.lander.land(*asked) if nominal is None else self.lander.land(*asked, {**base, **of_units(nominal)})
+        asked = of_units({**base, **values}), grid, observation.columns, observation.final
+        course = self.lander.land(*asked) if nominal is None else self.lander.land(*asked, of_units({**base, **nominal}))
         return course if course is not None and all(np.isfinite(c).all() for c in course.columns.values()) else None
 
     def _landed(self, k: int, z: Array, beside: Place | None) -> Array | None:

@@ -25,6 +25,12 @@ def column(addresses: Addresses, name: str) -> str:
     return _checked(addresses, name, name)
 
 
+def recorded_unit(addresses: Addresses, name: str) -> str:
+    """The unit of measure that the output of a channel or scalar is declared in."""
+    unit, _, variable = column(addresses, name).partition(".")
+    return addresses.blueprint.interfaces[unit].variables[variable].unit
+
+
 def twin_column(addresses: Addresses, name: str) -> str | None:
     """The twin's output that equals it, "sensor.telemetry.AXIS" for telemetry behind the twin; None where the twin has none."""
     found = column(addresses, name)
@@ -74,6 +80,18 @@ def _checked(addresses: Addresses, found: str, name: str) -> str:
     outputs = [it.name for it in interfaces[unit].of("output")]
     if variable not in outputs:
         raise AddressError(f'{addresses.where}: {name}: unit {unit} has no output "{variable}"; {nearest(variable, outputs)}')
+    return found
+
+
+def contact_columns(addresses: Addresses) -> dict[str, str]:
+    """Leg → the search's name of the instant at which its pad first touches; legs whose soil does not tell are left out."""
+    places, found = {leg: f"soil{i}" for i, leg in enumerate(LEGS, 1)}, {}
+    for leg, channels in addresses.results.legs.items():
+        try:
+            own = _checked(addresses, f"{channels.soil}.contact_time", leg)
+        except AddressError:
+            continue
+        found[leg] = f"{places[leg]}.contact_time" if leg in places else own
     return found
 
 

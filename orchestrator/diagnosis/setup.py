@@ -16,14 +16,17 @@ from orchestrator.diagnosis.coordinates import SHARED, Coordinate, Operation
 from orchestrator.diagnosis.effects.effect import Effect, Parameter
 from orchestrator.diagnosis.hypothesis import Hypothesis
 from orchestrator.diagnosis.landing import Lander
+from orchestrator.diagnosis.measured.channels import CANONICAL
 from orchestrator.diagnosis.measured.landing import Measured, Prior, Scalar
-from orchestrator.diagnosis.observation import ORIGIN, SEEN, Observation, Reading, Track
+from orchestrator.diagnosis.measured.units import UNITS
+from orchestrator.diagnosis.observation import CLOCK, ORIGIN, SEEN, Observation, Reading, Track
 from orchestrator.diagnosis.problem import Landings
-from orchestrator.diagnosis.recorded import twin_column
+from orchestrator.diagnosis.recorded import recorded_unit, twin_column
 from orchestrator.diagnosis.vehicle import Vehicle, vehicle_of
 from orchestrator.errors import AddressError, MeasuredError, ScenarioError
 
 Array = NDArray[np.float64]
+LONGEST_BESIDE = 60.0  # s: what a record may be longer than its landing
 ORIGIN_SIGMA = 0.005  # s: how well the data's zero is first contact when they say nothing else
 LEAST_EFFECT_STEP, NUISANCE_STEP, TOLERANCE_STEP = 0.08, 0.2, 0.5  # of z, for differences
 
@@ -51,6 +54,7 @@ class Setup:
 def nuisances_of(vehicle: Vehicle, prior: Prior, landing: int, base: dict[str, float]) -> list[Coordinate]:
     """Coordinates of one prior; its mean becomes the landing's base value."""
     groups = vehicle.slots(prior.name)
+    _in_unit(prior.unit, vehicle.addresses.unit_of_measure(prior.name), f"prior.{prior.name}")
     means = np.atleast_1d(prior.mean)
     if len(groups) != len(means):
         raise MeasuredError(f"prior.{prior.name}: gives {len(means)} numbers, expects {len(groups)}; give one for each component")
@@ -149,6 +153,13 @@ def _fixed(vehicle: Vehicle, effect: Effect) -> tuple[tuple[str, float], ...]:
     return tuple(found)
 
 
+def _in_unit(given: str, declared: str, where: str) -> None:
+    """MeasuredError where a unit was given, in SI, that is not that of the parameter or output."""
+    expected = UNITS[declared].si if declared in UNITS else ""
+    if given and expected and given != expected:
+        raise MeasuredError(f'{where}: is in {given}, the scenario has it in {declared}; correct the unit or the name')
+
+
 # Observations
 
 
@@ -157,7 +168,9 @@ def observation_of(addresses: Addresses, measured: Measured) -> Observation:
     tracks = []
     for series in measured.series:
         for i, channel in enumerate(series.channels):
-            column = _column(addresses, channel, f"{measured.folder.name}: series.{series.name}")
+            where = f"{measured.folder.name}: series.{series.name}"
+            column = _column(addresses, channel, where)
+            _in_unit(series.unit[i] if series.unit else "", recorded_unit(addresses, channel), f"{where}: {channel}")
             valid = series.mask[:, i]
             tracks.append(
                 Track(series.name, channel, column, series.times[valid], series.values[valid, i], float(series.sigma[i]), series.colour)
@@ -166,14 +179,26 @@ def observation_of(addresses: Addresses, measured: Measured) -> Observation:
     return Observation(tracks, readings)
 
 
+def _cut_to_the_landing(measured: Measured, stop: float) -> None:
+    """Before contact the scenario's vehicle flies free, and a search asks about every sample: a whole descent is no landing."""
+    for series in measured.series:
+        length = float(series.times[-1] - series.times[0])
+        if length > stop + LONGEST_BESIDE:
+            raise MeasuredError(
+                f"{measured.folder.name}: series.{series.name}: spans {length:.4g} s, the scenario lands in {stop:.4g} s;"
+                " cut it to the landing, from about a second before contact on"
+            )
+
+
 def _reading(addresses: Addresses, scalar: Scalar, where: str) -> Reading:
     peak = scalar.name.startswith("peak.")
     column = _column(addresses, scalar.name.removeprefix("peak."), f"{where}: values.{scalar.name}")
+    _in_unit(scalar.unit, recorded_unit(addresses, scalar.name), f"{where}: values.{scalar.name}")
     interval = scalar.kind == "interval"
     kind = "peak" if peak else "time" if scalar.name.startswith("contact_time.") else "rest"
     sigma = 1.0 if interval else scalar.sigma
     found = Reading(scalar.name, column, scalar.value, sigma, scalar.low, scalar.high, interval, kind, scalar.unit)
-    if interval and found.edge == 0.0:
+    if interval and 0.0 in (scalar.low, scalar.high) and not np.isfinite(scalar.high - scalar.low):
         raise MeasuredError(f"{where}: values.{scalar.name}: one end, at 0, does not tell how sharply it is meant; give low and high")
     return found
 
@@ -182,6 +207,8 @@ def _column(addresses: Addresses, channel: str, where: str) -> str:
     column = twin_column(addresses, channel)
     if column is None:
         raise MeasuredError(f"{where}: {channel} is not among the twin's outputs; leave it out, or diagnose a scenario that has it")
+    if channel in CANONICAL and channel.startswith("rates.") and column == channel:
+        return f"telemetry.{channel.removeprefix('rates.')}"  # of the sensor behind the twin: the body's own until an effect moves it
     return column.removeprefix("sensor.")
 
 
@@ -205,13 +232,16 @@ def set_up(
             nuisances += nuisances_of(vehicle, prior, landing, own)
         nuisances.append(Coordinate(ORIGIN, ((ORIGIN, 1.0),), ORIGIN_SIGMA, unit="s", landing=landing, step=0.5))
         observation = observation_of(addresses, one)
+        _cut_to_the_landing(one, blueprint.scenario.table.stop_time - blueprint.scenario.table.start_time)
         bases.append(own)
         observations.append(observation)
-        stops.append(blueprint.scenario.table.stop_time)
+        stops.append(blueprint.scenario.table.stop_time - blueprint.scenario.table.start_time)
     hypotheses, skipped = [], {}
     for name, effect in effects.items():
         adds = effect.insert is not None and not addresses.has(effect.insert.unit)
         found = "it adds a unit, and the search is slow" if adds and vehicle.why_slow else hypothesis_of(vehicle, effect)
+        if not isinstance(found, str) and (deaf := _clock_of_nobody(found, measured)):
+            found = deaf
         if isinstance(found, str):
             skipped[name] = found
         else:
@@ -229,6 +259,15 @@ def set_up(
         skipped,
         vehicle.why_slow,
     )
+
+
+def _clock_of_nobody(hypothesis: Hypothesis, measured: Sequence[Measured]) -> str:
+    """Why an effect on a series' clock cannot be seen; empty where a landing has that series."""
+    series = {CLOCK + one.name for landing in measured for one in landing.series}
+    moved = {name for c in hypothesis.coordinates for name, _ in c.slots if name.startswith(CLOCK)}
+    if not moved or not moved.isdisjoint(series):
+        return ""
+    return f'the data have no series "{min(moved).removeprefix(CLOCK)}", whose clock it would move'
 
 
 def names_of(folders: Sequence[Path]) -> list[str]:

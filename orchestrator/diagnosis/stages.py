@@ -21,6 +21,7 @@ from orchestrator.diagnosis.landing import ATTITUDE, RATES, Course
 from orchestrator.diagnosis.noise import TRUST, Noise, Stretch, noise_of
 from orchestrator.diagnosis.observation import Observation
 from orchestrator.diagnosis.pairs import fit_seconds
+from orchestrator.diagnosis.recorded import contact_columns
 from orchestrator.diagnosis.search import LEAST, Search, Told, renoised
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.tasks.predict import Land
@@ -38,7 +39,6 @@ MISLED = 8.0  # of φ: a base fit that proves so far from its best has misled th
 FOUND = 0.05  # s, standard deviation of a clock that is not as the data say: 93 were 0.04 off RMS, 0.10 at most
 ASKED = 8  # contenders; more of them are not told apart
 NO_LAWS: Mapping[str, int] = MappingProxyType({})
-CONTACTS = tuple(f"soil{k}.contact_time" for k in (1, 2, 3, 4))
 
 
 @dataclass
@@ -65,9 +65,10 @@ def look(setup: Setup, crew: Crew, coordinates: Sequence[Coordinate], z: Array, 
 def align(setup: Setup, crew: Crew) -> str:
     """Find where the data's clock has first contact, and refuse swapped axes: the complaint, or nothing."""
     for k, observation in enumerate(setup.landings.observations):
-        course = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k)
+        dated = [] if observation.tracks else [r.column for r in observation.readings if r.kind == "time"]
+        course = look(setup, crew, setup.nuisances, np.zeros(len(setup.nuisances)), k, dated)
         if course is None:
-            return ""
+            continue
         observation.shift = first_contact(observation, course)
         if observation.shift != 0.0:
             setup.nuisances[:] = [
@@ -90,7 +91,7 @@ def hear_noise(setup: Setup, crew: Crew, fit: Fit, best: bool = False) -> list[C
     told = explains(fit.chi2, size) or (best and fit.chi2 <= size * (1.0 + 3.0 * np.hypot(np.sqrt(2.0 / size), 2.0 * TRUST)))
     followed = freedom_used(fit) / channels if channels and told else None
     for k, (observation, part) in enumerate(zip(setup.landings.observations, setup.landings.parts, strict=True)):
-        course = look(setup, crew, fit.coordinates, fit.z, k, CONTACTS)
+        course = look(setup, crew, fit.coordinates, fit.z, k, tuple(contact_columns(setup.addresses).values()))
         if course is None:
             continue
         courses.append(course)

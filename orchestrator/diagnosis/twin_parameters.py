@@ -43,11 +43,19 @@ def why_not(addresses: Addresses) -> str:
         return "a unit is given a text, as a height map's file is, and the twin is flown with numbers alone"
     if addresses.is_twin:
         return ""
-    for check in (_foreign, _wired_otherwise, _shared, _constant_inputs, _unheard):
+    for check in (_begun_elsewhere, _foreign, _wired_otherwise, _shared, _constant_inputs, _unheard):
         reason = check(addresses)
         if reason:
             return reason
     return ""
+
+
+def _begun_elsewhere(addresses: Addresses) -> str:
+    """The search's landings begin with the lowest pad at the ground."""
+    start = addresses.blueprint.scenario.table.start
+    if start is None:
+        return "the scenario has no [start] that puts the lowest pad at the ground, where the twin's landings begin"
+    return f"the scenario begins {start.value:g} m above the ground, the twin's landings at it" if start.value != 0.0 else ""
 
 
 def _foreign(addresses: Addresses) -> str:

@@ -1,12 +1,14 @@
 """Clocks and axes: when first contact was, and whether channels were swapped."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from orchestrator.diagnosis.align import STEP, first_contact, swapped
-from orchestrator.diagnosis.landing import RATES, SPIN, Course
-from orchestrator.diagnosis.observation import Observation, Track
+from orchestrator.diagnosis.landing import ATTITUDE, RATES, SPIN, Course
+from orchestrator.diagnosis.observation import Observation, Reading, Track
 
 Array = NDArray[np.float64]
 GRID = np.arange(0.0, 4.0, 0.01)
@@ -80,6 +82,34 @@ def test_swapped_or_turned_axes_are_told_with_how_to_read_them(order: Three, sig
 @pytest.mark.parametrize("stretch", [0.5, 0.8, 1.0, 1.3, 2.0])
 def test_a_good_record_of_a_somewhat_other_landing_is_not_called_swapped(stretch: float) -> None:
     assert swapped(observation(0.0, 0.0, stretch), course()) == ""
+
+
+def test_axes_are_looked_at_where_a_sample_is_missing_and_where_a_series_holds_more_than_three_channels() -> None:
+    seen = observation(0.0, 0.0, 1.1, (0, 2, 1))
+    short = replace(seen.tracks[1], times=np.delete(seen.tracks[1].times, 20), readings=np.delete(seen.tracks[1].readings, 20))
+    assert "rates.yaw, rates.roll, rates.pitch" in swapped(Observation([seen.tracks[0], short, seen.tracks[2]], []), course())
+    besides = [replace(t, channel=a, column=a, readings=np.zeros(len(t.times))) for t, a in zip(seen.tracks, ATTITUDE, strict=True)]
+    flown = course()
+    flown.columns.update({a: np.zeros(len(GRID)) for a in ATTITUDE})
+    assert "rates.yaw, rates.roll, rates.pitch" in swapped(Observation([*seen.tracks, *besides], []), flown)
+
+
+def test_three_channels_that_are_no_axes_may_stand_in_any_order() -> None:
+    """Of loads of three legs the first and the second may well be exchanged: that is no fault of the data."""
+    seen, loads = observation(0.0, 0.0, 1.1, (0, 2, 1)), tuple(f"leg{k}.primary.load" for k in (1, 2, 3))
+    tracks = [replace(track, channel=load, column=load) for track, load in zip(seen.tracks, loads, strict=True)]
+    flown = course()
+    flown.columns.update({load: flown.columns[name] for load, name in zip(loads, RATES, strict=True)})
+    assert swapped(Observation(tracks, []), flown) == ""
+
+
+def test_instants_of_contact_tell_the_clock_where_there_is_no_series() -> None:
+    seen = ((1, 369040.2), (2, 369040.51))
+    times = [Reading(f"contact_time.{k}", f"soil{k}.contact_time", time, 0.01, kind="time") for k, time in seen]
+    flown = Course(GRID, {}, {"soil1.contact_time": 0.0, "soil2.contact_time": 0.3})
+    assert first_contact(Observation([], times), flown) == pytest.approx(369040.205)
+    never = Course(GRID, {}, {"soil1.contact_time": -1.0, "soil2.contact_time": -1.0})
+    assert first_contact(Observation([], times), never) == 0.0
 
 
 def test_a_quiet_channel_that_is_off_does_not_hide_the_clock() -> None:

@@ -1,5 +1,7 @@
 """From folders and a scenario to a search: names of landings, priors beside tolerances, units of somebody else, the twin itself."""
 
+import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,12 +12,15 @@ from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses, Slot
 from orchestrator.diagnosis.diagnose import beside_scenarios
 from orchestrator.diagnosis.effects.library import LIBRARY, load_library
+from orchestrator.diagnosis.landing import TELEMETRY
 from orchestrator.diagnosis.measured import read_measured
 from orchestrator.diagnosis.observation import SEEN
 from orchestrator.diagnosis.overlay import overlay, overridden, slot_of_unit
 from orchestrator.diagnosis.revision import write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup, known_otherwise, names_of, set_up
 from orchestrator.errors import MeasuredError, UserError
+from orchestrator.results.provenance import scenario_text
+from orchestrator.scenario.read import read_table
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 FOREIGN = SCENARIOS.parent / "build" / "foreign"
@@ -94,3 +99,67 @@ def test_what_the_command_line_set_is_in_the_revised_scenario(tmp_path: Path) ->
     assert revised.number(Slot("body", "mass")) == 7000.0
     assert [revised.number(Slot(unit, "friction")) for unit in ("soil-Z", "soil+Z")] == [0.6, zupp.number(Slot("soil+Z", "friction"))]
     assert "--set body.mass=7000" in path.read_text("utf-8")
+
+
+def measured_with(tmp_path: Path, old: str, new: str) -> Setup:
+    """The example's setup with a line of its landing.toml changed."""
+    shutil.copytree(DATA, tmp_path / "data", dirs_exist_ok=True)
+    text = (tmp_path / "data" / "landing.toml").read_text("utf-8")
+    assert old in text
+    (tmp_path / "data" / "landing.toml").write_text(text.replace(old, new, 1), "utf-8")
+    return setup_with(SCENARIOS / "apollo11_zupp.toml", tmp_path / "data")
+
+
+def setup_with(path: Path, data: Path) -> Setup:
+    effects = load_library([beside_scenarios(LIBRARY.name)])
+    return set_up(draw_up(read_scenario(path), path), [read_measured(data)], effects, beside_scenarios("tolerances.toml"))
+
+
+@pytest.mark.parametrize(("value", "slow"), [(0.0, ""), (2.0, "the scenario begins 2 m above the ground")])
+def test_a_scenario_that_does_not_begin_at_contact_is_not_searched_with_the_twin(tmp_path: Path, value: float, slow: str) -> None:
+    path = tmp_path / "aloft.toml"
+    path.write_text(f'extends = "{(SCENARIOS / "apollo11_zupp.toml").as_posix()}"\n[start]\nvalue = {value}\n', "utf-8")
+    found = setup_with(path, DATA)
+    assert found.why_slow.startswith(slow)
+    assert bool(found.why_slow) == bool(slow)
+
+
+def test_without_a_sensor_in_the_scenario_effects_of_one_are_seen_all_the_same(tmp_path: Path) -> None:
+    """Rates are read where the sensor behind the twin sends them; without such an effect they are the body's."""
+    path = tmp_path / "bare.toml"
+    tree = read_table(SCENARIOS / "apollo11_zupp.toml")
+    tree["units"].pop("sensor")
+    tree["connections"] = [it for it in tree["connections"] if not any("sensor" in str(value) for value in it.values())]
+    path.write_text(scenario_text(tree), "utf-8")
+    found = setup_with(path, DATA)
+    assert not found.why_slow
+    assert {t.column for t in found.landings.observations[0].tracks if t.channel.startswith("rates.")} == set(TELEMETRY)
+
+
+def test_an_effect_on_the_clock_of_a_series_that_is_not_there_is_left_out(tmp_path: Path) -> None:
+    found = measured_with(tmp_path, "[series.rates]", '[series.gyros]\ncolumns = ["yaw_rate", "pitch_rate", "roll_rate"]')
+    assert "no series \"rates\"" in found.skipped["clock_offset"]
+    assert "clock_offset" in {h.name for h in setup_with(SCENARIOS / "apollo11_zupp.toml", DATA).hypotheses}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("[prior.velocity_body]", '[prior."soil.plowing"]\nmean = 1454.0\nsigma = 9.0\nunit = "m/s"\n[prior.velocity_body]',
+         "prior.soil.plowing: is in m/s, the scenario has it in N/m"),
+        ('[values."stroke.+Z.primary"]', '[values."leg+Z.primary.load"]\nvalue = 1\nsigma = 1\nunit = "deg"\n[values."stroke.+Z.primary"]',
+         "values.leg+Z.primary.load: is in rad, the scenario has it in N"),
+        ("value = 0.0129\nsigma = 0.006", "low = 0.0", "values.penetration.+Y: one end, at 0, does not tell how sharply it is meant"),
+    ],
+)
+def test_a_unit_that_is_not_the_parameter_s_and_an_end_at_zero_are_refused(tmp_path: Path, old: str, new: str, says: str) -> None:
+    with pytest.raises(MeasuredError, match=re.escape(says)):
+        measured_with(tmp_path, old, new)
+
+
+def test_a_record_of_more_than_the_landing_is_to_be_cut(tmp_path: Path) -> None:
+    data = read_measured(DATA)
+    long = replace(data, series=[replace(one, times=one.times * 1000.0) for one in data.series])
+    path = SCENARIOS / "apollo11_zupp.toml"
+    with pytest.raises(MeasuredError, match=r"series\.\w+: spans 3\d\d\d s, the scenario lands in .* cut it to the landing"):
+        set_up(draw_up(read_scenario(path), path), [long], {}, beside_scenarios("tolerances.toml"))

@@ -32,7 +32,7 @@ def never_resting(random: np.random.Generator) -> SimpleNamespace:
         for k in range(1, len(noise)):
             noise[k] = RHO * noise[k - 1] + np.sqrt(1.0 - RHO**2) * noise[k]
         tracks.append(Track("rates", channel, channel, TIMES, SIGMA * noise, SIGMA, None))
-    return SimpleNamespace(landings=one_landing(tracks, (), {}), names=["one"])
+    return SimpleNamespace(landings=one_landing(tracks, (), {}), names=["one"], addresses=None)
 
 
 @pytest.mark.parametrize(("chi2", "rho"), [(1.0, RHO), (3.0, 0.0)], ids=["explains the data", "leaves more than noise"])
@@ -41,6 +41,7 @@ def test_colour_of_what_never_rests_is_judged_by_a_fit_that_explains_the_data_on
     grid = np.linspace(0.0, 3.0, 301)
     moving = Course(grid, {name: np.ones(301) for name in (*RATES, *ATTITUDE)}, {})
     monkeypatch.setattr(stages, "look", lambda *_: moving)
+    monkeypatch.setattr(stages, "contact_columns", lambda _: {})
     rows = setup.landings.size
     fit: Any = SimpleNamespace(
         coordinates=(), z=np.zeros(0), predicted=np.zeros(rows), chi2=chi2 * rows, jacobian=np.zeros((rows, 0)), covariance=np.zeros((0, 0))

@@ -12,6 +12,9 @@ All vectors in B unless said otherwise; the base's accelerations are those of a 
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .compiled import jit
 from .generic_terms import PRIMARIES, SECONDARIES, StrutTerm, strut_term
 from .honeycomb import Core, Stop, Tangent, primary_force, secondary_force
@@ -180,6 +183,22 @@ def crushed(leg: Leg, p: Vector, crush: Crush) -> Crush:
 def leg_mass(leg: Leg) -> float:
     """Mass of the whole leg, kg."""
     return leg.cylinder_mass + leg.piston_mass + 2.0 * leg.secondary_mass + leg.pad_mass
+
+
+def rigid_inertia(leg: Leg) -> NDArray[np.float64]:
+    """Inertia of the undeformed leg about B's origin, frame B, kg m2 (3, 3): rods by their consistent masses, and the pad's disc.
+
+    Of a rod from a to b ∫ r r' dm = m/6 (2 a a' + a b' + b a' + 2 b b').
+    """
+    upper, pad, right, left = (np.array(point) for point in (leg.geometry.upper, leg.geometry.pad, leg.geometry.right, leg.geometry.left))
+    axis = (pad - upper) / leg.geometry.length
+    joint, head = upper + leg.geometry.cylinder * axis, pad - leg.geometry.piston * axis
+    rods = ((leg.cylinder_mass, upper, joint), (leg.piston_mass, pad, head), (leg.secondary_mass, right, joint),
+            (leg.secondary_mass, left, joint))  # fmt: skip
+    second = leg.pad_mass * np.outer(pad, pad)
+    for mass, a, b in rods:
+        second += mass / 6.0 * (2.0 * np.outer(a, a) + np.outer(a, b) + np.outer(b, a) + 2.0 * np.outer(b, b))
+    return np.asarray(np.trace(second) * np.eye(3) - second + np.diag(leg.pad_inertia))
 
 
 def disc_inertia(mass: float, radius: float) -> Vector:

@@ -89,13 +89,17 @@ def published_normal(soil: Soil, depth: float, rate: float, datum: float) -> Nor
 
 @jit
 def compacted_normal(soil: Soil, depth: float, rate: float, datum: float) -> Normal:
-    """F_n = φ (K_n δ_m^p + w_d C_n max(δ̇, 0)), φ = 1 - (δ_m - δ)/b in [0, 1], δ_m = max(δ_MAX, δ): rate-independent compaction.
+    """F_n = φ (K_n δ_m^p + w_d C_n max(δ̇, 0)), φ = 1 - (δ_m - δ)/b_m in [0, 1], δ_m = max(δ_MAX, δ): rate-independent compaction.
 
-    Plastic flow on the virgin curve K_n δ^p, elastic unloading along the band b, no creep. Damping acts while sinking. Same parameters as
-    the published law; our second law (physics.md), not the paper's. A drag acts inside φ.
+    Plastic flow on the virgin curve K_n δ^p, elastic unloading along the band b_m = min(b, 2 δ_m/(p + 1)), so that a print shallower than
+    the band gives back no more than the work put in; no creep. Damping acts while sinking. Same parameters as the published law; our
+    second law (physics.md), not the paper's. A drag acts inside φ.
     """
     deepest = max(datum, depth)
-    share = 1.0 - (deepest - depth) / soil.band
+    if deepest <= 0.0:
+        return Normal(0.0, 0.0, 0.0)
+    band = min(soil.band, 2.0 * deepest / (soil.exponent + 1.0))
+    share = 1.0 - (deepest - depth) / band
     if share <= 0.0:
         return Normal(0.0, 0.0, 0.0)
     spring, spring_slope = spring_force(soil, deepest)
@@ -105,10 +109,10 @@ def compacted_normal(soil: Soil, depth: float, rate: float, datum: float) -> Nor
     if depth >= datum:
         slope = spring_slope + w_d_slope * soil.damping * sinking
     else:
-        slope = inner / soil.band + share * w_d_slope * soil.damping * sinking
+        slope = inner / band + share * w_d_slope * soil.damping * sinking
     own = Normal(share * inner, slope, share * w_d * soil.damping if rate > 0.0 else 0.0)
     if soil.effects.inertial_drag > 0.0:
-        return dragged(soil.effects, own, share, 1.0 / soil.band if depth < datum else 0.0, rate)
+        return dragged(soil.effects, own, share, 1.0 / band if depth < datum else 0.0, rate)
     return own
 
 

@@ -9,7 +9,7 @@ from .footpad import DEPTH, Footpad, PadMotion, Wrench, deepest, lever, pad_wren
 from .soil import Soil
 from .soil_stepping import InterfaceModel, PadStart, Shift, SoilCourse, step_soil
 from .surface import Surface, gap_at, normal_at
-from .vectors import Matrix, Vector, add, axpy, dot, rotation, scale, sub, times
+from .vectors import Matrix, Vector, add, axpy, dot, normalise, rotation, scale, sub, times
 
 Array = NDArray[np.float64]
 PENETRATION, GAP, SKID, NORMAL, WORK = range(5)  # places in the report
@@ -18,7 +18,7 @@ PENETRATION, GAP, SKID, NORMAL, WORK = range(5)  # places in the report
 @jit(inner=True)
 def read_start(pad: Array) -> PadStart:
     """Port `pad`: position, quaternion, velocity, angular velocity (13 numbers)."""
-    return PadStart(vector(pad, 0), quaternion(pad, 3), vector(pad, 7), vector(pad, 10))
+    return PadStart(vector(pad, 0), normalise(quaternion(pad, 3)), vector(pad, 7), vector(pad, 10))
 
 
 @jit(inner=True)

@@ -20,6 +20,7 @@ from .vectors import ZERO, Vector, add, apply_transposed, axpy, rotation, sub, y
 
 Array = NDArray[np.float64]
 ALIKE = 1e-9  # s: instants nearer than this are one
+NEVER = 1e300  # s
 
 
 class Tail(NamedTuple):
@@ -86,9 +87,10 @@ def tail_thrust(tail: Tail, contact: float, now: float, h: float) -> tuple[float
 
 
 @jit
-def next_corner(effects: Effects, contact: float, now: float, end: float) -> float:
-    """The first instant after now at which thrust or pulse have a corner; `end` where there is none before."""
-    if contact >= 0.0:
+def next_corner(effects: Effects, contact: float, now: float) -> float:
+    """The first instant after now at which thrust or pulse have a corner; for ever off where there is none."""
+    end = NEVER
+    if contact >= 0.0 and guided(effects.tail):
         for k in range(effects.tail.corners.shape[0]):
             corner = contact + effects.tail.corners[k, 0]
             if corner > now + ALIKE:

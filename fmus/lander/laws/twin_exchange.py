@@ -16,7 +16,7 @@ from .surface import gap_at, normal_at
 from .twin import CRUSH, Engine, Flight, P, Q, V, Vehicle, W
 from .twin_effects import Effects
 from .twin_nominal import Nominal
-from .twin_stepping import BALL, EFFECTS, ENGINE, SOIL, STRUTS, Ride, Settings, fly, pad_motion, state_of
+from .twin_stepping import BALL, EFFECTS, ENGINE, SMALLEST, SOIL, STRUTS, Ride, Settings, fly, pad_motion, state_of
 from .vectors import add, apply_transposed, dot, rotation, yaw_pitch_roll
 
 Array = NDArray[np.float64]
@@ -131,7 +131,7 @@ def fly_and_show(box: Any, time: float, interval: float) -> float:
     settings = Settings(run.settings.tolerance, run.settings.longest, run.first[0])
     done = fly(run.vehicle, run.effects, engine_at(run.port), settings, run.ride, run.nominal, time, interval)
     if not done.ok:
-        return done.next_step
+        return done.next_step if done.next_step > 0.0 else SMALLEST  # NaN, too, is a step that could not be done
     run.first[0] = done.next_step
     run.taken[0] += done.steps
     run.taken[1] += done.rejected

@@ -262,7 +262,7 @@ def fly(
         left = interval - t
         contact = first_touch(touch)
         if effects.active:
-            left = min(left, next_corner(effects, contact, time + t, time + interval) - (time + t))
+            left = min(left, next_corner(effects, contact, time + t) - (time + t))
         if nominal.use[0] == BESIDE:
             ahead = ahead_at(nominal, time + t)
         if ahead.place >= 0:

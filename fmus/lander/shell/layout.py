@@ -9,6 +9,7 @@ from .bounds import LARGEST, Floats, Slots
 from .records import Record
 
 SHELL_STATES = ("shell.phase", "shell.stale", "shell.start_time")  # the shell's own hidden states, at the end of the memory
+UNEVEN = 1e-3  # of a quaternion's length: a sender that does not normalise it may be off by so much
 MOST_ACCESSES = 1000  # a host asks for the same few sets of variables all the time; one that does not is not to fill the memory
 
 Access = tuple[Slots | slice, bool]  # where, and whether all of it are inputs
@@ -54,6 +55,7 @@ class Layout:
         self.inputs = self.checked("input")
         self.results = self.checked("output", "local", bounded=False)
         self.computed = np.array([s.slot for s in self.scalars if s.record.causality in ("output", "local", "state")], dtype=np.intp)
+        self.rotations = [self.slices[r.name] for r in self.records if r.causality == "input" and r.name.endswith("quaternion")]
         self.accesses: dict[tuple[int, ...], Access] = {}
 
     def checked(self, *causalities: str, bounded: bool = True) -> Checked:
@@ -62,6 +64,15 @@ class Layout:
         low = [s.record.minimum if bounded and s.record.minimum is not None else -LARGEST for s in chosen]
         high = [s.record.maximum if bounded and s.record.maximum is not None else LARGEST for s in chosen]
         return Checked(np.array([s.slot for s in chosen], dtype=np.intp), np.array(low), np.array(high))
+
+    def no_rotation(self, memory: Floats) -> str | None:
+        """A complaint about the first input quaternion that is none of a rotation."""
+        for where in self.rotations:
+            w, x, y, z = memory[where].tolist()
+            if not abs(w * w + x * x + y * y + z * z - 1.0) <= 2.0 * UNEVEN:
+                name = self.scalars[where.start].record.name
+                return f"{name} is ({w:g}, {x:g}, {y:g}, {z:g}), expects length 1, to {UNEVEN:g}"
+        return None
 
     def access(self, references: Sequence[int]) -> Access:
         """Where a set of value references lies, remembered; IndexError names one that is unknown."""

@@ -138,8 +138,9 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
         memory[layout.computed] = layout.template[layout.computed]
         memory[STALE] = 0.0
         try:
-            complaint = self.outside(layout.parameters) or self.outside(layout.inputs)
+            complaint = self.outside(layout.parameters) or self.outside(layout.inputs) or layout.no_rotation(memory)
             if complaint is None:
+                self.prepared = None
                 self.prepare()
                 self.prepared = object()
                 complaint = "; ".join(self.check()) or None
@@ -161,6 +162,8 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
         try:
             if first_outside(memory, inputs.slots, inputs.low, inputs.high) >= 0:
                 raise UnitError(self.outside(inputs))
+            if twisted := layout.no_rotation(memory):
+                raise UnitError(twisted)
             if not (step_size > 0.0 and isfinite(current_time + step_size)):
                 raise UnitError(f"the step is {step_size!r} s from {current_time!r} s, expects more than 0 s")
             self.advance(current_time, step_size)
@@ -224,6 +227,8 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu is not typed
         self.set_real(vrs, [1.0 if value else 0.0 for value in values])
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
+        if not vrs:
+            return
         if not all(self.layout.is_text(vr) for vr in vrs):
             self.report("message is written by the unit alone", Fmi2Status.warning)
         elif self.stepping:

@@ -10,7 +10,7 @@ from ..laws.generic_terms import AGAINST_MOTION, ALWAYS, StrutTerm
 from ..laws.honeycomb import DATUM_WEIGHT, Core, Stop, brake_damping
 from ..laws.leg import Leg, disc_inertia
 from ..laws.leg_exchange import BOTTOMED, GAVE_UP, advance_leg, start_leg
-from ..laws.leg_geometry import GearDimensions, LegGeometry, leg_geometry, moved
+from ..laws.leg_geometry import GearDimensions, GeometryError, LegGeometry, leg_geometry, moved
 from ..shell import Unit, UnitError, input_, output, parameter, state
 
 Array = NDArray[np.float64]
@@ -230,17 +230,23 @@ class GearLeg(Unit):
 
 
 def stages_past_limits(unit: Unit) -> Iterable[str]:
-    """What is wrong with a unit's cartridges: the first stage must end before the stroke does."""
+    """What is wrong with a unit's cartridges: the first stage ends before the stroke does, and past the rise of its own force."""
+    width = unit.value("transition_width")
     for strut in ("primary", "tension"):
         boundary, limit = unit.value(f"{strut}_boundary"), unit.value(f"{strut}_limit")
         if not boundary < limit:
             yield f"{strut}_boundary is {boundary:g} m, expects less than {strut}_limit, {limit:g} m"
+        if not width < boundary:
+            yield f"transition_width is {width:g} m, expects less than {strut}_boundary, {boundary:g} m"
 
 
 def geometry_of(unit: Unit, azimuth: float) -> LegGeometry:
     """The undeformed leg from a unit's parameters; GeometryError where it cannot close."""
     dimensions = GearDimensions(**{name: unit.value(name) for name in GearDimensions._fields})
     leg = leg_geometry(dimensions, azimuth, unit.value("origin_height"), unit.value("primary_limit"))
+    reach, shortest = unit.value("compression_limit"), min(leg.right_length, leg.left_length)
+    if not reach < shortest:
+        raise GeometryError(f"compression_limit is {reach:g} m, must be below the secondary's length {shortest:g} m")
     y, z = unit["cg_offset"].tolist()
     return moved(leg, y, z) if y != 0.0 or z != 0.0 else leg
 

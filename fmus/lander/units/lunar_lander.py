@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..laws.footpad import COLUMNS, POINTS, Footpad, deepest
+from ..laws.leg import leg_mass, rigid_inertia
 from ..laws.rigid_body import Body, BodyState, inertia_matrix
 from ..laws.twin import BODY_COLUMNS, LEG_COLUMNS, Flight, Vehicle
 from ..laws.twin_effects import Effects, Tail, guided
@@ -58,8 +59,8 @@ def leg_outputs(k: int) -> tuple[Record, ...]:
         output(f"leg{k}.pad.velocity", (0.0, 0.0, 0.0), "m/s", "of the ball joint, frame L", nominal=1.0),
         *(output(f"leg{k}.{s}.stroke", 0.0, "m", "compression of the primary, elongation of a secondary", nominal=0.1) for s in struts),
         *(output(f"leg{k}.{s}.load", 0.0, "N", "axial force without bearing friction", nominal=1e4) for s in struts),
-        *(output(f"leg{k}.{s}.peak_stroke", 0.0, "m", "greatest stroke so far", nominal=0.1) for s in struts),
-        output(f"leg{k}.bottomed", False, "", "whether any strut is beyond its stroke limit", boolean=True),
+        *(output(f"leg{k}.{s}.peak_stroke", 0.0, "m", "greatest stroke at a communication point so far", nominal=0.1) for s in struts),
+        output(f"leg{k}.bottomed", False, "", "whether any strut is beyond its stroke limit now", boolean=True),
         output(f"leg{k}.energy.dissipated", 0.0, "J", "taken up by struts and joints since the start", nominal=1e3),
         output(f"leg{k}.pad.work", 0.0, "J", "done on the leg by the soil since the start", nominal=1e3),
         output(f"soil{k}.penetration", 0.0, "m", "depth of the pad's centre below the surface", nominal=0.05),
@@ -92,7 +93,8 @@ class LunarLander(Unit):
     With `variation` = -k a run of values a little different is flown beside the last run that had `variation` = k: by its steps, and from
     its solutions. Such a run takes a quarter of the time, and the two differ by their values alone: differences of a thousandth of a
     tolerance give derivatives. Nominal runs are kept by the instance's name, past a reset; they should have the same communication points.
-    Without one a run is on its own.
+    Without one a run is on its own. Such runs belong to their process: a state restored in one goes on by the nominal run as it is then,
+    not to the last bit, and in another process without it.
     """
 
     nominals: ClassVar[dict[tuple[str, int], Nominal]] = {}
@@ -115,7 +117,7 @@ class LunarLander(Unit):
         *named("rcs", reaction_control.ReactionControl),
         *named("body_term", body_term.BodyTerm),
         parameter("tolerance", 1e-5, "m/s", "local error of any velocity a step", minimum=1e-9, maximum=1e-2),
-        parameter("longest_step", 1e-2, "s", "of the integrator", minimum=1e-6),
+        parameter("longest_step", 1e-2, "s", "of the integrator", minimum=1e-5),
         parameter(
             "variation", 0, "1", "0: own steps; k: own, kept as nominal run k; -k: nominal run k's", minimum=-8, maximum=8, integer=True
         ),
@@ -157,8 +159,19 @@ class LunarLander(Unit):
     def check(self) -> Iterable[str]:
         yield from vehicle_body.inertia_of_no_body(self)
         yield from gear_leg.stages_past_limits(self)
+        yield from self.lighter_than_its_parts()
         yield from guidance_control.falling_times(self, "guidance.")
         yield from regolith_contact.begun_too_early(self)
+
+    def lighter_than_its_parts(self) -> Iterable[str]:
+        """Mass and inertia are the whole vehicle's: what legs and slosh leave of them is a body's, too."""
+        legs, slosh = sum(leg_mass(leg) for leg in self.vehicle.legs), self.value("slosh.mass")
+        if not self.value("mass") > legs + slosh:
+            yield f"mass is {self.value('mass'):g} kg, expects more than the {legs + slosh:g} kg of legs and slosh"
+        own = np.array(self.vehicle.body.inertia) - sum(rigid_inertia(leg) for leg in self.vehicle.legs)
+        least = float(np.linalg.eigvalsh(own)[0])
+        if not least > 0.0:
+            yield f"inertia is the whole vehicle's: its legs leave a principal moment of {least:g} kg.m2, expects more than 0"
 
     def prepare(self) -> None:
         body = Body(self.value("mass"), inertia_matrix(triple(self["inertia"]), triple(self["inertia_products"])), self.value("gravity"))
@@ -215,7 +228,7 @@ class LunarLander(Unit):
         undone = fly_and_show(self.run, time, step)
         if undone > 0.0:
             self.refuse_gaps(self.vehicle.pad.radius)
-            raise UnitError(f"no convergence, or too many steps, at steps of {undone:.3g} s; a larger tolerance may do")
+            raise UnitError(f"no convergence, or too many steps, at steps of {undone:.3g} s; a larger tolerance or longest_step may do")
 
     def refuse_gaps(self, reach: float) -> None:
         """UnitError where the height map is not whole within `reach` (m) of any pad."""

@@ -153,7 +153,9 @@ class RegolithContact(Unit):
                 f"the contact's equations did not converge over {step:g} s at a sink depth of {-self.value('gap'):.4g} m; "
                 "a shorter interval may do"
             )
-        self.feel(time + max(touch, 0.0))
+        if touch >= 0.0 and self.value("contact_time") < 0.0:
+            self["contact_time"] = time + touch  # of a graze, too, that is over when the interval ends
+        self.feel(time)
 
     def refuse_gaps(self, reach: float, ahead: float = 0.0) -> None:
         """UnitError where the height map is not whole within `reach` (m) of the pad, as it will be `ahead` (s) from now."""

@@ -44,7 +44,8 @@ class VehicleBody(Unit):
     pitch is positive nose up, roll right side down, yaw nose left. Velocity at the start is given in B, as Table 5 does.
     Where legs offer a model of how their wrench answers (legK.model_*) and the master says what the body reached in the pass before
     (body.reference_*), the mean wrenches of that pass are corrected for what the body now does otherwise (laws/impedance.py).
-    Outputs with mean and slope are those of the motion just made, so that a leg stepped afterwards moves its base exactly as the body did.
+    Outputs with mean and slope are those of the motion just made: a leg stepped afterwards ends with the body's velocity exactly, and with
+    its place but for the curvature of the acceleration.
     """
 
     description = "Rigid body of the lander: six degrees of freedom under the wrenches of legs, engine and effects."

@@ -67,4 +67,4 @@ class Land:
 
     def __call__(self, lander: Lander) -> Course | None:
         values = Model(self.landings, self.coordinates, lander).values(self.z, self.landing)
-        return lander.land({**self.landings.bases[self.landing], **of_units(values)}, self.grid, self.columns, self.final)
+        return lander.land(of_units({**self.landings.bases[self.landing], **values}), self.grid, self.columns, self.final)
