@@ -78,7 +78,7 @@ def read_geotiff(path: Path, table: TerrainTable, place: str) -> Raster:
         import rasterio
         from rasterio.errors import RasterioError
     except ImportError:
-        raise ScenarioError(f"{place}: needs rasterio to be read: pip install 'lander-touchdown[terrain]', or give a .npy file") from None
+        raise ScenarioError(f"{place}: needs rasterio to be read: pip install 'rasterio>=1.4,<2', or give a .npy file") from None
     try:
         with rasterio.open(path) as source:
             return _geotiff(source, table, place)

@@ -96,6 +96,10 @@ def test_a_unit_with_wrong_parameters_never_crashes_its_host(fmus: dict[str, Pat
         (("VehicleBody", "LunarLander"), {"inertia[1]": 4e4}, "the principal moments are 17409, 20800 and 40000 kg.m2"),
         (("VehicleBody", "LunarLander"), {"inertia_products[1]": 17000.0}, "expects each more than 0"),
         (("GearLeg", "LunarLander"), {"primary_boundary": 0.9}, "primary_boundary is 0.9 m, expects less than primary_limit, 0.812 m"),
+        (("GearLeg", "LunarLander"), {"transition_width": 0.05, "tension_boundary": 0.02}, "expects less than tension_boundary, 0.02 m"),
+        (("GearLeg", "LunarLander"), {"compression_limit": 2.0}, "compression_limit is 2 m, must be below the secondary's length 1."),
+        (("LunarLander",), {"mass": 200.0}, "mass is 200 kg, expects more than the 311.76 kg of legs and slosh"),
+        (("LunarLander",), {"inertia[1]": 3e3, "inertia[2]": 3e3, "inertia[3]": 3e3}, "its legs leave a principal moment of -1110"),
     ],
 )
 def test_the_twin_refuses_what_its_units_refuse(
@@ -120,3 +124,17 @@ def test_a_run_that_begins_before_zero_is_refused_where_a_contact_is_dated(fmus:
 
 def test_a_flat_body_is_a_body(fmus: dict[str, Path], host: Host) -> None:
     assert host(fmus["VehicleBody"], **{"inertia[1]": 3e4, "inertia[2]": 1e4, "inertia[3]": 2e4}).step(0.0, 1e-3) == OK
+
+
+@pytest.mark.parametrize(("name", "port"), [("GearLeg", "body.quaternion"), ("RegolithContact", "pad.quaternion")])
+def test_an_input_quaternion_that_is_no_rotation_is_named(fmus: dict[str, Path], host: Host, name: str, port: str) -> None:
+    one = host(fmus[name])
+    one[f"{port}[1]"] = 2.0
+    assert one.step(0.0, 1e-3) == DISCARD
+    assert f"{port} is (2, 0, 0, 0), expects length 1, to 0.001" in one["message"]
+    one[f"{port}[1]"] = 1.0005
+    assert one.step(0.0, 1e-3) == OK
+    other = host(fmus[name], initialise=False)
+    other[f"{port}[1]"] = 0.0
+    other.slave.exitInitializationMode()
+    assert f"{port} is (0, 0, 0, 0), expects length 1" in other["message"]

@@ -20,6 +20,7 @@ from lander.laws.footpad import (
 from lander.laws.soil import PUBLISHED, RATE_INDEPENDENT, UNLATCHED, Soil, normal_force
 from lander.laws.surface import inclined_plane
 from lander.laws.vectors import Vector, identity
+from lander.units.regolith_contact import RegolithContact
 from scipy.spatial.transform import Rotation
 
 SOIL = Soil(PUBLISHED, 30000.0, 1.5, 30000.0, 0.1, 1e-4, 1e-4, 0.36, 290.8, 1e-3)
@@ -183,3 +184,18 @@ def point_force(soil: Soil, at: PadMotion, memory: np.ndarray, i: int) -> np.nda
     way = np.array(at.position) + arm - memory[i, PLACE : PLACE + 3]
     way -= normal * (normal @ way)
     return push * normal - push * soil.friction * slip / np.hypot(np.linalg.norm(slip), soil.slip_velocity) - soil.plowing * way
+
+
+def test_a_graze_within_an_interval_is_the_first_contact() -> None:
+    """Verifies: contact_time of a pad that comes down to the ground and is off it again when the interval ends.
+    Setup: 0.1 mm above the ground at -50 mm/s, pulled up at 10 m/s2 (mobility of 500 kg): down to -25 µm after 5 ms, 1.1 mm above after 20.
+    Tolerance: 0.6 ms, a little more than a substep; without soil the pad would be at the ground after 2.76 ms.
+    """
+    one = RegolithContact(instance_name="soil")
+    one["pad.position"], one["pad.velocity"] = (0.1001, 0.0, 0.0), (-0.05, 0.0, 0.0)
+    one["pad.model_acceleration"], one["pad.model_mobility"] = (10.0, 0.0, 0.0), np.eye(3).ravel() / 500.0
+    one.setup_experiment(0.0, None, None)
+    one.exit_initialization_mode()
+    assert one.do_step(0.0, 0.02), one.message
+    assert one["contact"][0] == 0.0
+    assert one["contact_time"][0] == pytest.approx(2.76e-3, abs=6e-4)
