@@ -1,6 +1,8 @@
 """Addresses of the diagnosis in a scenario of separate units, and the overlay made of new values."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,10 +11,11 @@ from orchestrator.blueprint import Blueprint, draw_up, read_scenario
 from orchestrator.diagnosis.addresses import Addresses, Slot, known_addresses
 from orchestrator.diagnosis.effects.effect import Insert
 from orchestrator.diagnosis.overlay import Change, overlay, write_overlay
-from orchestrator.diagnosis.recorded import column, twin_column
+from orchestrator.diagnosis.recorded import column, contact_columns, twin_column
 from orchestrator.diagnosis.twin_parameters import twin_parameters
 from orchestrator.errors import AddressError
 from orchestrator.master.slave import Kind
+from orchestrator.results.schema import LegChannels
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 LEGS = ("+Z", "+Y", "-Z", "-Y")
@@ -235,3 +238,10 @@ def test_the_twin_of_a_scenario_has_the_parameters_of_its_twin_scenario(name: st
 def number(text: object) -> float:
     """A start value as the description writes it."""
     return float({"true": "1", "false": "0"}.get(str(text).lower(), str(text)))
+
+
+def test_instants_of_contact_have_the_twin_s_names_where_the_legs_have_and_those_of_the_units_elsewhere(zupp: Addresses) -> None:
+    assert contact_columns(zupp) == {leg: f"soil{k}.contact_time" for k, leg in enumerate(("+Z", "+Y", "-Z", "-Y"), 1)}
+    legs = {"front": LegChannels(leg="leg+Z", soil="soil+Z"), "deaf": LegChannels(leg="leg+Y", soil="sensor")}
+    other: Any = SimpleNamespace(results=SimpleNamespace(legs=legs), blueprint=zupp.blueprint, where="other.toml")
+    assert contact_columns(other) == {"front": "soil+Z.contact_time"}

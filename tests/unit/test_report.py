@@ -255,6 +255,22 @@ def test_the_terminal_tells_sentence_rivals_gap_where_and_files(tmp_path: Path) 
         console.print(terminal_summary(outcome(verdict)))
 
 
+@pytest.mark.parametrize(
+    ("verdict", "told"),
+    [
+        ("cannot_tell", ("penetration.+Z", "0.20 cm", "differs by 3 sigma")),
+        ("data_fault", ("rates.yaw", "stands still for 40 samples", "0.400", "0.800")),
+    ],
+)
+def test_the_terminal_says_what_would_decide_and_what_is_at_fault(tmp_path: Path, verdict: str, told: tuple[str, ...]) -> None:
+    console = Console(record=True, width=140, file=(tmp_path / "out").open("w", encoding="utf-8"))
+    console.print(terminal_summary(outcome(verdict)))
+    text = console.export_text()
+    assert "below" not in text
+    for words in told:
+        assert text.count(words) >= 1, text
+
+
 def test_distinguish_orders_likeness_and_names_the_sensor(tmp_path: Path) -> None:
     table = distinction()
     page = read(write_distinction(tmp_path, table))
