@@ -82,9 +82,14 @@ def shortlist(vehicle: Vehicle, fit: Handed, held: Handed) -> Tree:
     best: dict[str, tuple[Array, Array | None]] = {"": (np.zeros(0), None)}
     for name in sorted(gains, key=gains.__getitem__, reverse=True)[:SHORT]:
         effect, count = vehicle.effects[name], len(nuisances)
-        model = fit.model([*nuisances, *vehicle.coordinates(effect)], effect)
-        for start in (np.zeros(len(effect.parameters)), np.array(_starts(vehicle, effect)[0])):
-            found = fitted(model, np.concatenate([null.z, start]), np.column_stack([null.slopes, columns[name]]), steps=8)
+        model, own = fit.model([*nuisances, *vehicle.coordinates(effect)], effect), range(count, count + len(effect.parameters))
+        for start in (np.zeros(len(own)), *map(np.array, _starts(vehicle, effect))):
+            z = np.concatenate([null.z, start])
+            there = model.predict(z) if start.any() else null.predicted
+            if there is None:
+                continue
+            slopes = model.slopes(z, there, own) if start.any() else columns[name]
+            found = fitted(model, z, np.column_stack([null.slopes, slopes]), there, steps=8, renew=tuple(own))
             if found is not None and found.log_evidence > scores.get(name, -np.inf):
                 scores[name], best[name] = found.log_evidence, (found.z[count:], np.sqrt(np.diag(found.covariance))[count:])
     return _verdict(vehicle, scores, best)
@@ -145,12 +150,17 @@ def _features(fit: Handed) -> tuple[dict[str, Array], dict[str, str]]:
 
 
 def _residuals(landing: Handed) -> list[tuple[str, Array, Array, float]]:
-    """(channel, s since first contact, data less prediction, sigma), with the nuisances fitted once."""
+    """(channel, s since first contact, data less prediction, sigma), with nuisances and tolerances fitted once."""
     if not hasattr(landing, "fitted_residuals"):
-        found = _fit(landing.model(landing.nuisances), np.zeros(len(landing.nuisances)), steps=12)
+        free = [*landing.nuisances, *landing.vehicle.tolerances()]
+        model = landing.model(free)
+        found = _fit(model, np.zeros(len(free)), steps=12)
         predicted = found.predicted if found is not None else landing.model(()).predict(np.zeros(0))
+        if predicted is None:
+            raise ArithmeticError("the scenario cannot be flown at the prior mean")
+        values = model.values(found.z, 0) if found is not None else {}
         rows = [
-            (track.channel, track.times - landing.observation.shift, landing.observation.raw(predicted, i), track.sigma)
+            (track.channel, track.times - landing.observation.late(track, values), landing.observation.raw(predicted, i), track.sigma)
             for i, track in enumerate(landing.observation.tracks)
         ]  # fmt: skip
         landing.fitted_residuals = rows  # type: ignore[attr-defined]
@@ -192,7 +202,7 @@ def _score(null: Fit, own: Array) -> float:
 
 
 def _verdict(vehicle: Vehicle, scores: Mapping[str, float], best: Mapping[str, tuple[Array, Array | None]]) -> Tree:
-    """The name with 0.9 of the weight, or the smallest set that has it."""
+    """The name with 0.9 of the weight, or the smallest set that has it; nothing missing where that is in the set."""
     names = sorted(scores, key=scores.__getitem__, reverse=True)
     weights = np.exp(np.array([scores[name] for name in names]) - scores[names[0]])
     weights /= weights.sum()
@@ -201,7 +211,9 @@ def _verdict(vehicle: Vehicle, scores: Mapping[str, float], best: Mapping[str, t
     if weights[0] >= SURE:
         return {"verdict": "effect", "effects": [_named(vehicle.effects[names[0]], vehicle, best[names[0]], float(weights[0]))]}
     count = int(np.searchsorted(np.cumsum(weights), SURE)) + 1
-    return {"verdict": "cannot_tell", "cannot_tell": {"names": [name for name in names[:count] if name], "measure": []}}
+    if "" in names[:count]:
+        return {"verdict": "nothing_missing"}
+    return {"verdict": "cannot_tell", "cannot_tell": {"names": names[:count], "measure": []}}
 
 
 def _named(effect: Effect, vehicle: Vehicle, at: tuple[Array, Array | None], probability: float) -> Tree:

@@ -207,3 +207,12 @@ def unchanged(keys: Path, manifest: Path) -> dict[str, str]:
     if changed:
         raise ValueError(f"{keys}: the key of case {changed[0]} is not the one that {manifest} has; begin a new set")
     return digests
+
+
+def complete(keys: Path, manifest: Path) -> None:
+    """ValueError where the keys are not, to the last one, those that the manifest lists."""
+    digests, known = unchanged(keys, manifest), json.loads(manifest.read_text("utf-8"))["keys_sha256"]
+    if digests != known:
+        odd = min(digests.keys() ^ known.keys())
+        where = "keys" if odd in digests else "set"
+        raise ValueError(f"{keys}: case {odd} is in the {where} alone; give the keys that the set was made with")

@@ -23,16 +23,23 @@ def pooled(paths: Sequence[Path]) -> list[Score]:
     found = [replace(score, case=f"{path.parent.name}/{score.case}") for path in paths for score in _read(path)]
     if not found:
         raise ValueError(f"{', '.join(map(str, paths))}: no scores")
-    methods = sorted({score.by for score in found})
-    if len(methods) > 1:
-        by = " and ".join(it or "an unknown commit" for it in methods)
-        raise ValueError(f"diagnosed by {by}: scores of one method only can be pooled")
+    one_method(found)
+    unsure = sorted({score.by for score in found if not score.by or score.by.endswith("+")})
+    if unsure and len(paths) > 1:
+        raise ValueError(f"diagnosed by {unsure[0] or 'an unknown commit'}, no commit as it stands: whether by one method nobody knows")
     seen: dict[tuple[int, ...], str] = {}
     for score in found:
         if score.seed and score.seed in seen:
             raise ValueError(f"{score.case} is {seen[score.seed]}: one case, made with seed {score.seed[0]}; give each case once")
         seen[score.seed] = score.case
     return found
+
+
+def one_method(scores: Sequence[Score]) -> None:
+    """ValueError where two commits or two commands judged them."""
+    methods = sorted({f"{score.method or 'an unknown command'} of {score.by or 'an unknown commit'}" for score in scores})
+    if len(methods) > 1:
+        raise ValueError(f"diagnosed by {' and by '.join(methods)}: scores of one method only make a table")
 
 
 def _read(path: Path) -> list[Score]:

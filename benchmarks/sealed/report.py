@@ -13,6 +13,7 @@ from tables import markdown, write_json
 from sealed import targets
 from sealed.closure import kept_closure
 from sealed.figures import psychometric
+from sealed.pool import one_method
 from sealed.scoring import Score, load, opened_keys, scored
 from sealed.vehicle import Vehicle
 
@@ -32,7 +33,7 @@ def scores_of(keys: Path, results: Path, recompute: bool, told: Callable[[str], 
         run, diagnosis = load(place / "run.json"), load(place / "diagnosis.json")
         if run is None and diagnosis is None:
             continue
-        if diagnosis is not None and (run or {}).get("watched") is False:
+        if diagnosis is not None and not (run or {}).get("watched"):
             raise UnsealedError(f"{place}: nobody noted which files this diagnosis opened; its result is void")
         seen = opened_keys(run or {}, keys)
         if seen:
@@ -41,6 +42,7 @@ def scores_of(keys: Path, results: Path, recompute: bool, told: Callable[[str], 
         found.append(scored(path.stem, key, diagnosis, run, closure))
         if told is not None:
             told(path.stem)
+    one_method(found)
     return found
 
 
@@ -64,7 +66,13 @@ def _head(scores: Sequence[Score]) -> str:
     simulations = sorted(s.simulations for s in scores if math.isfinite(s.simulations))
     unjudged = sum(s.answer == "unjudged" for s in scores)
     middle = f", {simulations[len(simulations) // 2]:,.0f} simulations in the median case" if simulations else ""
-    return f"{len(scores)} cases{middle}; {unjudged} without a verdict on effects (they count against every target).\n"
+    told = f"{unjudged} without a verdict on effects (they count against every target for verdicts; closure and minutes leave them out)"
+    return f"{len(scores)} cases{middle}; {told}.{_of_plowing(scores)}\n"
+
+
+def _of_plowing(scores: Sequence[Score]) -> str:
+    count = sum(s.truth == targets.PLOWING for s in scores)
+    return f" {count} of a law that is plowing by another name is left out." if count else ""
 
 
 def _too_small(scores: Sequence[Score]) -> str:

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from sealed import diagnoses
 from sealed.kinds import SHARES
-from sealed.make import UnmadeError, make, unchanged
+from sealed.make import UnmadeError, complete, make
 from sealed.pool import pooled
 from sealed.report import UnsealedError, report, scores_of
 from sealed.sealing import COMMAND, Diagnosis
@@ -98,11 +98,13 @@ def _score(options: argparse.Namespace) -> int:
     if options.set is not None:
         if not (options.set / "set.json").is_file():
             raise ValueError(f"{options.set}: holds no set.json; give the folder that `make` wrote")
-        unchanged(options.keys, options.set / "set.json")
+        complete(options.keys, options.set / "set.json")
     with _bar("scores", len(list(options.keys.glob("[0-9]*.json")))) as told:
         scores = scores_of(options.keys, options.results, not options.stated_closure, lambda _: told())
     if not scores:
         raise ValueError(f"{options.results}: holds no result of a case of {options.keys}; diagnose the set first")
+    left = len(list(options.keys.glob("[0-9]*.json"))) - len(scores)
+    print(f"{left} cases have no result yet and are left out\n" if left else "", end="")
     print(report(scores, options.out))
     return 0
 

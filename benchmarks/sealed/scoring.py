@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -48,6 +49,8 @@ class Score:
     simulations: float = math.nan
     by: str = ""
     """Commit of the method."""
+    method: str = ""
+    """What was called: `orchestrator diagnose`, or a baseline."""
     seed: tuple[int, ...] = ()
     """Makes the case again; no two cases share one."""
     skipped: tuple[str, ...] = ()
@@ -69,8 +72,16 @@ def scored(case: str, key: Tree, diagnosis: Tree | None, run: Tree | None = None
         len(set(truth) & parts), _number(closure if closure is not None else stated), errors, pulls,
         right_port(said, key) if outside else None, right_form(said, key) if outside else None,
         _number((run or {}).get("seconds")), _number((run or {}).get("simulations", said.get("simulations"))),
-        str((run or {}).get("by", "")), tuple(key.get("seed", ())), tuple(it["effect"] for it in key.get("skipped", ())),
+        str((run or {}).get("by", "")), method_of(str((run or {}).get("command", ""))), tuple(key.get("seed", ())),
+        tuple(it["effect"] for it in key.get("skipped", ())),
     )  # fmt: skip
+
+
+def method_of(command: str) -> str:
+    """"orchestrator diagnose" or "sealed.baselines bic" of a command line, whichever the Python and the paths."""
+    words = shlex.split(command)
+    at = words.index("-m") + 1 if "-m" in words else 0
+    return " ".join(it for it in words[at : at + 2] if not it.startswith("-"))
 
 
 def _named(said: Tree) -> tuple[str, ...]:

@@ -24,6 +24,7 @@ from sealed.commit import ROOT, commit
 WATCH = Path(__file__).resolve().parent / "watch"
 COMMAND = (sys.executable, "-m", "orchestrator", "diagnose", "{scenario}", "--measured", "fit", "--holdout", "holdout",
            "--out", "out", "--seed", "{seed}", "--workers", "1")  # fmt: skip
+STOPPED = -1  # exit code of a diagnosis that took too long
 KEPT = ("HOME", "LANG", "PATH", "SYSTEMROOT", "TMPDIR", "NUMBA_CACHE_DIR", "VIRTUAL_ENV")
 
 
@@ -63,17 +64,27 @@ def diagnose(case: Path, result: Path, diagnosis: Diagnosis) -> dict[str, Any]:
         record: dict[str, Any] = {"seconds": perf_counter() - start, "exit_code": exit_code, "by": commit()}
         record["command"] = shlex.join(diagnosis.words())
         found = room / "out" / "diagnosis.json"
-        if found.is_file():
-            record["simulations"] = json.loads(found.read_text("utf-8")).get("simulations")
+        whole = _whole(found) if exit_code != STOPPED else None  # one that was stopped has not proved what it wrote
+        if whole is not None:
+            record["simulations"] = whole.get("simulations")
         opened = room / "opened.txt"
         lines = opened.read_text("utf-8").splitlines() if opened.is_file() else []
         record["opened"] = [line for line in lines if not line.startswith(place)]
         record["watched"] = opened.is_file()
         (result / "said.txt").write_text(said, "utf-8")
         (result / "run.json").write_text(json.dumps(record, indent=1) + "\n", "utf-8")
-        if found.is_file():
+        if whole is not None:
             shutil.copyfile(found, result / "diagnosis.json")
     return record
+
+
+def _whole(path: Path) -> dict[str, Any] | None:
+    """A diagnosis, if it was written to its end."""
+    try:
+        tree: dict[str, Any] = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+    return tree
 
 
 def _call(diagnosis: Diagnosis, room: Path) -> tuple[int, str]:
@@ -82,5 +93,5 @@ def _call(diagnosis: Diagnosis, room: Path) -> tuple[int, str]:
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=diagnosis.limit, check=False)  # fmt: skip
     except subprocess.TimeoutExpired as late:
         said = late.stdout.decode("utf-8", "replace") if isinstance(late.stdout, bytes) else late.stdout or ""
-        return -1, f"{said}\nstopped after {diagnosis.limit:g} s"
+        return STOPPED, f"{said}\nstopped after {diagnosis.limit:g} s"
     return done.returncode, done.stdout

@@ -17,6 +17,8 @@ Test = Callable[[Score], bool]
 CEILING = ((16.0, 0.82), (25.0, 0.93), (49.0, 0.98), (100.0, 1.0))
 """λ, share of right names that a perfect judge reaches."""
 MINUTES = 10.0
+PLOWING = ("outside_tangent_slide",)
+"""A law said to be outside the library that is `plowing` by another name; sets made before it was noticed (commit 27b3626) may hold it."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +33,15 @@ class Target:
 
 
 def _kind(*kinds: str) -> Test:
-    return lambda score: score.kind in kinds
+    return lambda score: score.kind in kinds and score.truth != PLOWING
 
 
 def _named(score: Score) -> bool:
     return score.verdict in ("effect", "effects")
+
+
+def _surely_named(score: Score) -> bool:
+    return _named(score) and score.probability >= SURE and score.truth != PLOWING
 
 
 def _right(score: Score) -> bool:
@@ -48,13 +54,13 @@ TARGETS = (
     Target("right name at λ 25", _kind("single 25"), _right, 0.85),
     Target("right name at λ 49", _kind("single 49"), _right, 0.92),
     Target("right name at λ 100 and up", _kind("single 100", "single large"), _right, 0.95),
-    Target("named with probability 0.9 or more and right", lambda s: _named(s) and s.probability >= SURE, _right, 0.97),
+    Target("named with probability 0.9 or more and right", _surely_named, _right, 0.97),
     Target("twins: right set or right name", _kind("twin"), lambda s: s.answer in ("set", "right"), 0.85),
     Target("twins: wrong single name", _kind("twin"), lambda s: s.answer in ("wrong", "unjudged"), 0.05, True),
     Target("decoys given a name", _kind("decoy"), lambda s: _named(s) or s.answer == "unjudged", 0.05, True),
-    Target("outside the library: refuses a library name", _kind("outside"), lambda s: not _named(s) and s.answer != "unjudged", 0.85),
-    Target("outside the library: right port", _kind("outside"), lambda s: bool(s.port), 0.85),
-    Target("outside the library: right form or its class", _kind("outside"), lambda s: bool(s.form), 0.70),
+    Target("outside the library: refuses a library name", _kind("outside"), lambda s: s.answer in ("refused", "set"), 0.85),
+    Target("outside the library: right port", _kind("outside"), lambda s: bool(s.port) and s.answer != "unjudged", 0.85),
+    Target("outside the library: right form or its class", _kind("outside"), lambda s: bool(s.form) and s.answer != "unjudged", 0.70),
     Target("two effects: both", _kind("two"), _right, 0.65),
     Target("two effects: at least one", _kind("two"), lambda s: _named(s) and s.hits >= 1, 0.95),
 )
@@ -64,9 +70,12 @@ def table(scores: Sequence[Score]) -> list[Row]:
     """Every target, then gap closure and cost."""
     rows = [row(target, scores) for target in TARGETS]
     singles = [s.closure for s in scores if s.truth and s.kind != "outside" and _named(s)]
-    outside = [s.closure for s in scores if s.kind == "outside" and s.form is not None]
+    outside = [s.closure for s in scores if s.kind == "outside" and s.truth != PLOWING and s.answer != "unjudged"]
+    nameless = [s.closure for s in scores if s.truth and s.kind != "outside" and s.answer == "refused"]
     rows.append(median_row("gap closed on a held-out landing, median of the named", singles, 0.90))
     rows.append(median_row("the same, outside the library", outside, 0.80))
+    if any(map(math.isfinite, nameless)):  # a correction without a name, as a Gaussian process makes it
+        rows.append(median_row("the same, corrected without a name", nameless, 0.90))
     rows.append(median_row("minutes of the median case", [s.seconds / 60.0 for s in scores], MINUTES, at_most=True))
     return rows
 
@@ -100,7 +109,7 @@ def met(figure: float, bound: float, at_most: bool) -> str:
 
 def confusion(scores: Sequence[Score]) -> list[Row]:
     """Every case that was not answered as it should be."""
-    wanted = dict.fromkeys(NULLS, ("nothing",)) | {"outside": ("refused",), "twin": ("right", "set")}
+    wanted = dict.fromkeys(NULLS, ("nothing",)) | {"outside": ("refused", "set"), "twin": ("right", "set")}
     wrong = [score for score in scores if score.answer not in wanted.get(score.kind, ("right",))]
     return [
         {"case": s.case, "kind": s.kind, "λ": round(s.energy, 1), "hidden": ", ".join(s.truth) or "nothing", "verdict": s.verdict,

@@ -22,8 +22,8 @@ from sealed.energy import energy, scaled_to
 from sealed.hidden import Signatures
 from sealed.instruments import noisy, observation, public
 from sealed.kinds import SHARES, Plan, counts, plans
-from sealed.make import FINE, _write_manifest, made, make, scenes_of, unchanged
-from sealed.pool import pooled
+from sealed.make import FINE, _write_manifest, complete, made, make, scenes_of, unchanged
+from sealed.pool import one_method, pooled
 from sealed.scene import base_of, centred
 from sealed.vehicle import ZUPP, Vehicle
 from sealed.wilson import wilson
@@ -310,6 +310,13 @@ def test_a_key_that_was_changed_is_refused(tmp_path: Path) -> None:
     (keys / "001.json").write_text("{}")
     _write_manifest(out, keys, 2)
     (keys / "000.json").write_text("{ }")
+    (keys / "001.json").rename(keys / "002.json")
+    (keys / "000.json").write_text("{}")
+    with pytest.raises(ValueError, match="case 001 is in the set alone; give the keys"):
+        complete(keys, out / "set.json")
+    (keys / "002.json").rename(keys / "001.json")
+    complete(keys, out / "set.json")
+    (keys / "000.json").write_text("{ }")
     for told in (lambda: _write_manifest(out, keys, 2), lambda: unchanged(keys, out / "set.json")):
         with pytest.raises(ValueError, match="the key of case 000 is not the one"):
             told()
@@ -377,12 +384,10 @@ def test_the_table_has_every_target_and_says_what_was_met(tmp_path: Path) -> Non
 # Pooling
 
 
-def part(folder: Path, seed: int, by: str = "abc", cases: int = 2) -> Path:
+def part(folder: Path, seed: int, by: str = "abc", cases: int = 2, call: str = "") -> Path:
     """A score.json of so many cases of one set."""
-    scores = [
-        scoring.scored(f"{i:03}", key("single 49", "a") | {"seed": [seed, 1 + i, 0], "skipped": [{"effect": "b"}]}, named("a"), {"by": by})
-        for i in range(cases)
-    ]
+    mine = [key("single 49", "a") | {"seed": [seed, 1 + i, 0], "skipped": [{"effect": "b"}]} for i in range(cases)]
+    scores = [scoring.scored(f"{i:03}", mine[i], named("a"), {"by": by, "command": call}) for i in range(cases)]
     report.report(scores, folder)
     return folder / "score.json"
 
@@ -399,8 +404,57 @@ def test_scores_of_several_sets_make_one_table(tmp_path: Path) -> None:
 
 
 def test_scores_of_two_methods_are_not_pooled(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="diagnosed by abc and def: scores of one method only"):
+    call = "an unknown command"
+    with pytest.raises(ValueError, match=f"diagnosed by {call} of abc and by {call} of def: scores of one method only"):
         pooled([part(tmp_path / "one", 1), part(tmp_path / "two", 2, by="def")])
+    with pytest.raises(ValueError, match=r"diagnosed by orchestrator diagnose of abc and by sealed\.baselines bic of abc"):
+        pooled([part(tmp_path / "three", 1, call="/usr/bin/python -m orchestrator diagnose /x/zupp.toml --measured fit"),
+                part(tmp_path / "four", 2, call="python3 -m sealed.baselines bic")])  # fmt: skip
+    with pytest.raises(ValueError, match=r"diagnosed by abc\+, no commit as it stands"):
+        pooled([part(tmp_path / "five", 1, by="abc+"), part(tmp_path / "six", 2, by="abc+")])
+
+
+def test_a_folder_of_results_by_two_methods_makes_no_table(tmp_path: Path) -> None:
+    scores = [scoring.scored(str(i), key("null white"), named("a"), {"by": by}) for i, by in enumerate(("abc", "def"))]
+    with pytest.raises(ValueError, match="scores of one method only make a table"):
+        one_method(scores)
+
+
+def test_the_law_that_is_plowing_by_another_name_counts_nowhere() -> None:
+    odd = scoring.scored("0", key("outside", "outside_tangent_slide"), named("plowing"))
+    assert all(row["n"] == 0 for row in targets.table([odd]) if "minutes" not in row["on sealed cases"])
+    assert "1 of a law that is plowing by another name is left out" in report._head([odd])
+
+
+@pytest.mark.parametrize(
+    ("verdict", "names", "refuses"),
+    [
+        ("none_of_my_effects", [], True),
+        ("nothing_missing", [], False),
+        ("cannot_tell", ["a", "b"], False),
+        ("cannot_tell", ["a", "found"], True),
+    ],
+)
+def test_who_says_nothing_or_names_the_library_refuses_nothing(verdict: str, names: list[str], refuses: bool) -> None:
+    said = {"verdict": verdict, "cannot_tell": {"names": names}, "term": {"name": "found", "port": "soil.normal"}}
+    rows = {row["on sealed cases"]: row for row in targets.table([scoring.scored("0", key("outside", "hidden"), said)])}
+    assert rows["outside the library: refuses a library name"]["figure"] == float(refuses)
+
+
+def test_a_law_found_by_a_run_that_cannot_be_trusted_has_no_right_port() -> None:
+    said = {"verdict": "numerics", "term": {"name": "found", "port": "soil.normal"}, "gap": {"closure": 0.9}}
+    rows = {row["on sealed cases"]: row for row in targets.table([scoring.scored("0", key("outside", "hidden"), said)])}
+    assert rows["outside the library: right port"]["figure"] == 0.0
+    assert rows["the same, outside the library"]["n"] == 0
+
+
+def test_a_result_of_which_nobody_noted_what_was_opened_is_void(tmp_path: Path) -> None:
+    (tmp_path / "keys").mkdir()
+    (tmp_path / "results" / "000").mkdir(parents=True)
+    (tmp_path / "keys" / "000.json").write_text(json.dumps(key("null white")))
+    (tmp_path / "results" / "000" / "diagnosis.json").write_text('{"verdict": "nothing_missing"}')
+    with pytest.raises(report.UnsealedError, match="nobody noted"):
+        report.scores_of(tmp_path / "keys", tmp_path / "results", recompute=False)
 
 
 def test_a_case_counts_once(tmp_path: Path) -> None:
