@@ -58,6 +58,7 @@ class Simulation:
             schedule.check(self.master)
         with self._last_words():
             self.initialise()
+            self._watch_trials()
             self.master.prepare()
             if schedule is not None:
                 schedule.begin(self.master, self.blueprint, fresh=True)
@@ -80,6 +81,7 @@ class Simulation:
         """Go on from a checkpoint of this blueprint, to the same result."""
         with self._last_words():
             self._initialise(self.blueprint.values)
+            self._watch_trials()
             self.master.prepare()
             put(self.master, snapshot)
             if schedule is not None:
@@ -123,6 +125,16 @@ class Simulation:
             os._exit(RunError.exit_code)
 
         return nullcontext() if self.on_hang is None else last_words(say)
+
+    def _watch_trials(self) -> None:
+        """Before the run there is nothing to be kept of a unit that hangs, but its name."""
+
+        def leave(message: str) -> None:
+            sys.stderr.write(f"error: {message}\n")
+            sys.stderr.flush()
+            os._exit(RunError.exit_code)
+
+        self.master.watchdog.on_hang = None if self.on_hang is None else leave
 
     def _watch(self) -> None:
         on_hang = self.on_hang

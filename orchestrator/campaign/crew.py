@@ -7,8 +7,8 @@
             landing.outcome, landing.outputs["strokes_m.+Z.left"], landing.error
 
 An entry is what `orchestrator run SCENARIO --set` takes, so every landing can be flown alone. A landing that cannot be flown is one with
-`error`; the others go on. A worker that dies is replaced and its landings are flown again by another; one landing that kills
-DEATHS workers is given up, and says so.
+`error`; the others go on. A worker that dies is replaced and its landings are flown again by another; those that DEATHS workers died
+over are flown once more alone, and one that kills as many then is given up, and says so.
 """
 
 from __future__ import annotations
@@ -91,6 +91,7 @@ class Crew:
 
         client = self._connected()
         left, flying = iter(landings), {}
+        suspects: list[tuple[Name, tuple[str, ...]]] = []
         done = as_completed(loop=client.loop)
 
         def send(count: int) -> None:
@@ -104,9 +105,19 @@ class Crew:
             while flying:
                 future: Future = next(done)
                 name, overrides = flying.pop(future)
-                landing = _landing(future, base, overrides)
+                landing = _landing(future)
                 send(1)
-                yield name, landing
+                if landing is None:
+                    suspects.append((name, overrides))
+                else:
+                    yield name, landing
+            for name, overrides in suspects:  # a worker takes those that wait for it along when it dies: alone the guilty one shows
+                future = client.submit(land, base, overrides, pure=False)
+                flying[future] = (name, overrides)
+                landing = _landing(future)
+                del flying[future]
+                died = f"{base.where}: {DEATHS} workers died over this landing; fly it alone to see why"
+                yield name, landing or Landing(overrides, NOT_FLOWN, False, died)
         finally:
             if flying:
                 client.cancel(list(flying), force=True)
@@ -128,15 +139,15 @@ class Crew:
         return LocalCluster(n_workers=self.workers, silence_logs=logging.CRITICAL, env=ONE_THREAD, **options)
 
 
-def _landing(future: Future, base: Base, overrides: tuple[str, ...]) -> Landing:
-    """A finished future's landing."""
+def _landing(future: Future) -> Landing | None:
+    """A future's landing, waited for; None where the workers it was given to died."""
     from distributed import CancelledError, KilledWorker
 
     try:
         landing: Landing = future.result()
         return landing
     except KilledWorker:
-        return Landing(overrides, NOT_FLOWN, False, f"{base.where}: {DEATHS} workers died over this landing; fly it alone to see why")
+        return None
     except CancelledError:
         raise RunError("the scheduler was lost; what was flown is kept: start the cluster, then give the same command again") from None
 

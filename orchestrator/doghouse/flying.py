@@ -13,12 +13,15 @@ from orchestrator.blueprint import draw_up, read_scenario
 from orchestrator.campaign.crew import Crew
 from orchestrator.campaign.inputs import resolved
 from orchestrator.campaign.landing import Base
+from orchestrator.checkpoint.origin import made_with, sources
 from orchestrator.doghouse.landing import Inputs, Margins, margins_of, overrides
 from orchestrator.doghouse.model import Flown
 from orchestrator.errors import ScenarioError
 
 PLACES = re.compile(r'^(fmu|references) = ".*"$', re.MULTILINE)
 """Lines of a scenario that say where files lie, by which its landings are no others."""
+SOURCES = ("results", "campaign", "doghouse")
+"""Folders of the orchestrator that margins are computed in; the master's are in `made_with`."""
 Heard = Callable[[str, int, int], None]
 """Called with the stage, how many of its landings are done, and of how many."""
 
@@ -31,7 +34,7 @@ class Scenario:
     base: Base
     addresses: Mapping[str, Sequence[str]]
     made_of: str
-    """Of what its landings follow from: text and FMUs."""
+    """Of what its landings follow from: text, FMUs, versions."""
 
     @classmethod
     def read(cls, flown: Flown, folder: Path, where: str) -> Scenario:
@@ -45,7 +48,8 @@ class Scenario:
         base = Base.read(path)
         units = sorted({interface.sha256 for interface in drawn.interfaces.values()})
         text = PLACES.sub("", base.text)
-        return cls(path, base, addresses, hashlib.sha256("\n".join([text, *units]).encode()).hexdigest())
+        made = [sources(SOURCES), *(f"{name} {version}" for name, version in sorted(made_with().items()))]
+        return cls(path, base, addresses, hashlib.sha256("\n".join([text, *units, *made]).encode()).hexdigest())
 
     def overrides(self, inputs: Inputs) -> list[str]:
         return overrides(inputs, self.addresses)
@@ -68,6 +72,8 @@ class Logbook:
 
     def put(self, key: str, margins: Margins, cpu_seconds: float) -> None:
         self._known[key], self.cost[key] = margins, cpu_seconds
+        if margins.error:  # a worker that died or a time limit is no property of the landing: it is flown again by another call
+            return
         with self.path.open("a", encoding="utf-8") as file:
             file.write(json.dumps({"key": key, "cpu_seconds": cpu_seconds, **asdict(margins)}) + "\n")
 
@@ -98,7 +104,7 @@ class Flying:
         self._tell(stage, len(wanted) - len(left), len(wanted))
         for done, (key, landing) in enumerate(self.crew.fly(scenario.base, left.items()), start=len(wanted) - len(left) + 1):
             self.flown += 1
-            self.logbook.put(key, margins_of(landing.outputs, landing.error), landing.cpu_seconds)
+            self.logbook.put(key, margins_of(landing.outputs, landing.error, landing.trusted), landing.cpu_seconds)
             self._tell(stage, done, len(wanted))
         self.cpu_seconds += sum(self.logbook.cost.get(key, 0.0) for key in dict(wanted))
         return [found for key, _ in wanted if (found := self.logbook.get(key)) is not None]

@@ -53,6 +53,8 @@ class Margins:
     """The edge it came nearest to going over, the struts that came nearest to their limits."""
     clearance_m: float | None = None
     error: str = ""
+    trusted: bool = True
+    """Whether it held its tolerance to the end; one that did not counts as it ended, and is counted."""
 
     def fails(self, boundary: str) -> bool:
         """One that could not be flown is held to fail: a boundary may then be too near, never too far."""
@@ -95,7 +97,7 @@ def overrides(inputs: Inputs, addresses: Mapping[str, Sequence[str]]) -> list[st
     return found
 
 
-def margins_of(outputs: Mapping[str, Any], error: str) -> Margins:
+def margins_of(outputs: Mapping[str, Any], error: str, trusted: bool = True) -> Margins:
     """From a landing's flat summary; one that has none could not be flown."""
     if not outputs:
         return Margins(dict.fromkeys(BOUNDARIES), (), False, False, error=error or "not flown")
@@ -106,4 +108,4 @@ def margins_of(outputs: Mapping[str, Any], error: str) -> Margins:
         left["tip_over"] = 0.0  # still inside, but turning too fast to stay so
     at = {name: str(outputs.get(f"failure.{name}.{'edge' if name == 'tip_over' else 'strut'}")) for name in BOUNDARIES}
     decided = bool(outputs.get("failure.tip_over.decided"))
-    return Margins(left, failed, decided, bool(outputs.get("stable")), at, outputs.get("failure.clearance.margin_m"))
+    return Margins(left, failed, decided, bool(outputs.get("stable")), at, outputs.get("failure.clearance.margin_m"), trusted=trusted)

@@ -24,8 +24,10 @@ def terminal_report(outcome: Outcome, folder: Path) -> RenderableType:
 
 
 def _sentence(outcome: Outcome) -> Text:
-    inside = outcome.inside()
+    inside, failed = outcome.inside(), outcome.failed_audit()
     title = Text(outcome.doghouse.title + "  ", style="bold")
+    if not inside and failed:
+        return title.append(f"{len(failed)} landings inside the certified envelope fail, though no boundary was found there", style="red")
     if not inside:
         return title.append("all boundaries lie outside the certified envelope", style="green")
     names = ", ".join(dict.fromkeys(name.replace("_", " ") for name, _ in inside))

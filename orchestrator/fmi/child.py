@@ -57,7 +57,7 @@ class Child:
         unit = self._unit
         if unit is None:
             return Answer(outcome, b"", [], None, [], "")
-        news, self._told = unit.messages[self._told :], len(unit.messages)
+        news, self._told = unit.said_since(self._told), unit.said
         y = self._binding.y
         return Answer(outcome, y.tobytes(), [text_of(y[at]) for at in self._text_out], unit.reached, news, unit.complaint)
 

@@ -84,6 +84,7 @@ class IsolatedUnit:
         self._ask("bind", binding)
 
     def set_up(self, start: float, stop: float, values: Mapping[str, Value]) -> None:
+        self.messages.clear()
         self._ask("set_up", start, stop, dict(values))
 
     def exchange(self) -> None:

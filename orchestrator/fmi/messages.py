@@ -26,6 +26,7 @@ class MessageLog:
     def __init__(self, unit: str) -> None:
         self.unit = unit
         self.messages: list[str] = []
+        self.taken = 0
         self._worst = ""
         self.complaint = ""
         """The last message with status error since `forget`."""
@@ -36,6 +37,7 @@ class MessageLog:
         text = " ".join((message or b"").decode("utf-8", "replace").split())
         if text:
             self.messages.append(text)
+            self.taken += 1
             del self.messages[:-_KEPT]
             if status > 0:
                 self._worst = text
@@ -44,7 +46,8 @@ class MessageLog:
 
     def forget(self) -> None:
         """Before a new start: what went wrong at the last one does not count."""
-        self.complaint = ""
+        self.complaint = self._worst = ""
+        self.messages.clear()
 
     def last(self) -> str:
         """The last thing worth telling: a warning or worse if there was one."""

@@ -85,6 +85,16 @@ class FmuUnit(ABC):
         return self._log.messages
 
     @property
+    def said(self) -> int:
+        """How many messages there were, those no longer kept among them."""
+        return self._log.taken
+
+    def said_since(self, count: int) -> list[str]:
+        """The messages kept of those after so many."""
+        new = self._log.taken - count
+        return self._log.messages[-new:] if new > 0 else []
+
+    @property
     def complaint(self) -> str:
         """What the unit logged as an error since its last start; an initialisation may fail in no other way (decision 2)."""
         return self._log.complaint

@@ -96,6 +96,7 @@ class Block:
 
     def note_start(self, time: int) -> None:
         """Before an interval: z as it stands."""
+        self.newton.note(self._board.values[self._start])
         row = np.concatenate([[time / NANOSECONDS], self._board.values[self._start]])
         if row[0] != self._history[-1, 0]:
             self._history[:-1] = self._history[1:]

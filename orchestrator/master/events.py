@@ -16,6 +16,9 @@ from orchestrator.master.judge import StepLimits, fit_to_stop
 from orchestrator.master.plan import Places, Plan
 from orchestrator.master.settings import NANOSECONDS, in_ns
 
+NOWHERE = -(2**62)
+"""ns: a time before any run's."""
+
 
 class Cut(NamedTuple):
     interval: int
@@ -25,7 +28,7 @@ class Cut(NamedTuple):
 
 
 class Events:
-    """Of one system. `aim` is the time (ns) up to which a change is known to happen, 0 where none is."""
+    """Of one system. `aim` is the time (ns) up to which a change is known to happen, NOWHERE where none is."""
 
     MEMORY = ("aim", "sought")
 
@@ -35,7 +38,7 @@ class Events:
         self._tolerance = max(1, in_ns(tolerance))
         self._scheduled = [(plan.board.start_at(unit, name), unit) for unit, name in plan.scheduled]
         self._located = [(unit, name) for unit, names in enumerate(plan.system.located) for name in names]
-        self.aim = 0
+        self.aim = NOWHERE
         self.sought = ""
         """The output whose change is aimed at."""
         self.warnings: list[str] = []
@@ -62,7 +65,7 @@ class Events:
         """The controller's interval, or less; never above `most`, which a refusal left."""
         why = ""
         instant, unit = self._next_scheduled(time)
-        if instant:
+        if unit >= 0:
             shorter = min(fit_to_stop(interval, instant - time, limits), most)
             if shorter != interval or time + shorter == instant:
                 interval, why = shorter, f"scheduled {self._system.slaves[unit].name}"
@@ -87,11 +90,11 @@ class Events:
 
     def pass_by(self, time: int) -> None:
         """A step to this time was accepted."""
-        if self.aim and time >= self.aim:
-            self.sought, self.aim = "", 0
+        if time >= self.aim:
+            self.sought, self.aim = "", NOWHERE
 
     def _next_scheduled(self, time: int) -> tuple[int, int]:
-        """The earliest time announced, ns (0: none), and by whom."""
+        """The earliest time announced, ns, and by whom; -1: by nobody."""
         earliest, who = 0, -1
         for place, unit in self._scheduled:
             announced = float(self._board.start[place])

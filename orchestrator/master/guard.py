@@ -8,13 +8,16 @@ that never pulls cuts them off) count too when they last.
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orchestrator.errors import TrustError
 from orchestrator.master.coupling import UnitPair, pair_of
 from orchestrator.master.plan import Plan
 from orchestrator.master.settings import NANOSECONDS
+from orchestrator.master.slave import Vector
 
 SWINGS, LASTING = 4, 40
 """Swings in a row: growing tenfold within them, or without growth."""
@@ -25,7 +28,9 @@ SEEN = 0.02
 
 
 class Guard:
-    """Over everything that travels on explicit connections. Not kept by checkpoints: it only counts the last few steps."""
+    """Over everything that travels on explicit connections."""
+
+    MEMORY = ("memory",)
 
     def __init__(self, plan: Plan, explicit: Collection[UnitPair]) -> None:
         self._plan = plan
@@ -39,6 +44,20 @@ class Guard:
         self._largest, self._before, self._first = np.zeros(size), np.zeros(size), np.zeros(size)
         self._swings, self._since, self._steps = (np.zeros(size, dtype=np.intp) for _ in range(3))
 
+    @property
+    def memory(self) -> Vector:
+        """What passes from one step to the next, for checkpoints."""
+        return np.concatenate([np.asarray(it, dtype=np.float64) for it in self._arrays])
+
+    @memory.setter
+    def memory(self, values: Vector) -> None:
+        for kept, mine in zip(np.split(values, len(self._arrays)) if len(values) else (), self._arrays, strict=False):
+            mine[:] = kept
+
+    @property
+    def _arrays(self) -> tuple[NDArray[Any], ...]:
+        return (self._direction, self._turn, self._largest, self._before, self._first, self._swings, self._since, self._steps)
+
     def check(self, time: int, interval: int) -> None:
         """After each step, before the board moves on; ns."""
         if not self._sources:
@@ -51,12 +70,12 @@ class Guard:
         width = np.abs(start - self._turn)
         swings = turned & (self._since <= FAST) & (width > 0.5 * self._before) & (width > SEEN * self._largest)
         over = (turned & ~swings) | (self._since > FAST)
-        self._swings = np.where(over, 0, self._swings + swings)
+        self._swings[:] = np.where(over, 0, self._swings + swings)
         self._steps[self._swings <= 1] = 0
-        self._first = np.where(self._swings <= 1, width, self._first)
+        self._first[:] = np.where(self._swings <= 1, width, self._first)
         growing = swings & (self._swings >= SWINGS) & (width > 10.0 * self._first)
         self._before[turned], self._turn[turned], self._since[turned] = width[turned], start[turned], 0
-        self._direction = np.where(now == start, self._direction, np.sign(now - start))
+        self._direction[:] = np.where(now == start, self._direction, np.sign(now - start))
         beyond = np.flatnonzero(growing | (self._swings >= LASTING))
         if beyond.size:
             worst = int(beyond[0])

@@ -18,28 +18,38 @@ _NEW = 0.3
 
 
 class InterfaceNewton:
-    """Knows numbers only. `nominal` gives each z a least size; larger values met on the way replace it."""
+    """Knows numbers only. `nominal` gives each z a least size; larger values of accepted instants (`note`) replace it.
+
+    Iterates do not: one that shot away would loosen what is asked of all later ones. What they met serves the present attempt's learning.
+    """
 
     def __init__(self, nominal: Vector, motions: int) -> None:
         self.size = len(nominal)
         self._scale = nominal.copy()
+        self._met, self._latest = nominal.copy(), np.zeros(len(nominal))
         self._kept = np.zeros((self.size + motions, self.size))
         self._kept_interval = 1.0
         self._explored = np.zeros((self.size, self.size))
         self._directions = 0
         self._now = self._kept
 
+    def note(self, z: Vector) -> None:
+        """z at an accepted instant."""
+        np.maximum(self._scale, np.abs(z), out=self._scale)
+
     def begin(self, interval: float) -> None:
         """A new attempt. Answers grow with the interval, to first order: so do G and M."""
         self._base = self._kept * (interval / self._kept_interval)
         self._now = self._base
         self._interval = interval
+        self._met = self._scale.copy()
         self._z: list[Vector] = []
         self._answers: list[Vector] = []
 
     def correct(self, z: Vector, g: Vector, motion: Vector) -> Vector:
         """What to add to z, having learnt what it led to."""
-        np.maximum(self._scale, np.abs(g), out=self._scale)
+        self._latest = np.abs(g)
+        np.maximum(self._met, self._latest, out=self._met)
         answer = np.concatenate([g, motion])
         if self._z and not np.array_equal(z, self._z[-1]):
             self._learn(z, answer)
@@ -62,23 +72,23 @@ class InterfaceNewton:
         return np.asarray(self._now[self.size :] @ change)
 
     def share(self, change: Vector) -> float:
-        """The largest change, as a share of the largest value met."""
-        return float(np.max(np.abs(change) / self._scale))
+        """The largest change, as a share of the largest value at any accepted instant, or of the present answer."""
+        return float(np.max(np.abs(change) / np.maximum(self._scale, self._latest)))
 
     def can_weigh(self, change: Vector) -> bool:
         """Whether M knows the direction of this change."""
         if self._directions == self.size:
             return True
-        scaled = change / self._scale
+        scaled = change / self._met
         rest = scaled - self._explored @ (self._explored.T @ scaled)
         return bool(rest @ rest <= _NEW**2 * (scaled @ scaled))
 
     def _learn(self, z: Vector, answer: Vector) -> None:
         """Least change of [G; M] that explains all differences of this interval, in z measured by its scale."""
-        steps = np.array([(z - old) / self._scale for old in self._z]).T
+        steps = np.array([(z - old) / self._met for old in self._z]).T
         rises = np.array([answer - old for old in self._answers]).T
         self._explore(steps[:, -1])
-        scaled_base = self._base * self._scale
+        scaled_base = self._base * self._met
         missing = rises - scaled_base @ steps
         if steps.shape[1] == 1:
             step = steps[:, 0]
@@ -87,7 +97,7 @@ class InterfaceNewton:
             update = missing[:, -1:] / steps[0, -1]
         else:
             update = missing @ np.linalg.pinv(steps, rcond=1e-6)
-        self._now = (scaled_base + update) / self._scale
+        self._now = (scaled_base + update) / self._met
 
     def _explore(self, step: Vector) -> None:
         if self._directions == self.size:

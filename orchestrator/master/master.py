@@ -35,7 +35,7 @@ class Master:
 
     MEMORY = (
         *("_time", "_next", "_settling", "unresolved", "wall_time", "warnings", "log", "plan", "recorder", "ledger"),
-        *("switched", "block_memory", "events", "until"),
+        *("switched", "block_memory", "_guard", "events", "until"),
     )
     """What passes from one accepted step to the next outside the units, kept by checkpoints. An object named here has its own."""
 
@@ -66,9 +66,9 @@ class Master:
         """Outputs at the start, consistent with each other; may be called again with other values."""
         self._time = in_ns(start)
         self._begin, self._stop = self._time, in_ns(stop)
-        self._initialise_again: Callable[[], None] = lambda: initialise(self.plan, self._start_jobs, start, stop, values)
+        self._initialise_again: Callable[[], str] = lambda: initialise(self.plan, self._start_jobs, start, stop, values)
         self.watchdog.where = lambda: f" at t = {self._time / NANOSECONDS:.9g} s"
-        self._initialise_again()
+        self._unsettled = self._initialise_again()
 
     def value(self, unit: int, name: str) -> float:
         """An output, as of now."""
@@ -84,6 +84,7 @@ class Master:
         self._able = together(able, self.plan.reduced)
         self._savers = [slave for slave, can in zip(system.slaves, self.rollback, strict=True) if can]
         self._couple()
+        self.warnings += [self._unsettled] if self._unsettled else []
         self.warnings += self._estimates.warnings
         self.events.prepare(self.repeated, self.rollback, not self._fix_interval())
         self.warnings += self.events.warnings
@@ -95,7 +96,7 @@ class Master:
         trials = [Trial(self.plan, unit, self._time, self.watchdog) for unit in self._everyone]
         with self.watchdog:
             for slave, trial in zip(self.system.slaves, trials, strict=True):
-                trial.run(self.limits.maximum, self.limits.minimum)
+                trial.run(min(self.limits.maximum, self._stop - self._time), self.limits.minimum)
                 if trial.untrue and slave.name not in self.system.once:
                     claim = f"{slave.name}: claims rollback (canGetAndSetFMUstate), but {trial.untrue}"
                     raise UnitError(f"{claim}; mend the unit, or set its once = true")
@@ -198,7 +199,7 @@ class Master:
             slave.save()
         self._sweep.time = self._time
         self._sweep.note_start()
-        followed, most = False, self._stop
+        followed, most = False, self._stop - self._time
         while True:
             fitted = min(fit_to_stop(wanted, self._stop - self._time, self.limits), most)
             interval, cut = self.events.cut(fitted, self._time, self.limits, most)
@@ -211,7 +212,7 @@ class Master:
                 self._note(interval, nan, False, refused.kind)
                 self._settling = SETTLING
                 most = wanted = next_attempt(refused, self._time, interval, self.limits, not followed)
-                followed = followed or bool(refused.reached)
+                followed = followed or refused.reached is not None
                 self._undo()
                 continue
             if event:
@@ -291,12 +292,13 @@ class Master:
 
     def _record(self, last: bool) -> None:
         elapsed = self._time - self._begin
-        if self.recorder.is_due(elapsed, last or self.stop_requested):
+        due = self.recorder.is_due(elapsed, last)
+        if due or self.stop_requested:
             for slave in self.system.slaves:
                 slave.observe()
             check_finite(self.plan, self._time)
             self.recorder.record(self._time / NANOSECONDS, elapsed)
-            if self.until.met(elapsed):
+            if due and self.until.met(elapsed):  # a row out of turn would be one more than an uninterrupted run looks at
                 self._stop = self._time
 
     def _note(self, interval: int, estimate: float, accepted: bool, limit: str) -> None:

@@ -17,8 +17,8 @@ class Refusal(NamedTuple):
     job: Job
     why: str
     """In the unit's own words, where it has any."""
-    reached: int = 0
-    """ns: the time up to which it did step (lastSuccessfulTime); not later than the start where it did not."""
+    reached: int | None = None
+    """ns: the time up to which it did step (lastSuccessfulTime); None where it did not."""
 
     @property
     def name(self) -> str:
@@ -27,14 +27,14 @@ class Refusal(NamedTuple):
     @property
     def kind(self) -> str:
         """For the log."""
-        return f"early return of {self.name}" if self.reached else f"discard by {self.name}"
+        return f"early return of {self.name}" if self.reached is not None else f"discard by {self.name}"
 
 
 def refusal(job: Job, time: int, interval: int) -> Refusal:
     """Of a step that was just discarded; ns."""
     said = job.slave.messages[-1] if job.slave.messages else "it gave no message"
-    reached = 0 if job.slave.reached is None else round(job.slave.reached * NANOSECONDS)
-    return Refusal(job, said, reached if SHORTEST <= reached - time < interval else 0)
+    reached = time if job.slave.reached is None else round(job.slave.reached * NANOSECONDS)
+    return Refusal(job, said, reached if SHORTEST <= reached - time < interval else None)
 
 
 def next_attempt(refused: Refusal, time: int, interval: int, limits: StepLimits, honour: bool) -> int:
@@ -42,7 +42,7 @@ def next_attempt(refused: Refusal, time: int, interval: int, limits: StepLimits,
 
     `honour`: an early return is followed once for each accepted step, so that a unit cannot lead the run in ever smaller circles.
     """
-    if refused.reached and honour:
+    if refused.reached is not None and honour:
         return refused.reached - time
     shorter = halve(interval, limits)
     if shorter is None:
@@ -55,7 +55,7 @@ def next_attempt(refused: Refusal, time: int, interval: int, limits: StepLimits,
 
 def stuck_error(refused: Refusal, stuck: str, time: int, interval: int) -> StepError:
     """A unit refused and another (or itself) has stepped and cannot go back."""
-    came = f", came to {refused.reached / NANOSECONDS:.9g} s" if refused.reached else ""
+    came = f", came to {refused.reached / NANOSECONDS:.9g} s" if refused.reached is not None else ""
     return StepError(
         f"{refused.name}: refused the step at t = {time / NANOSECONDS:.9g} s of {interval / NANOSECONDS:.3g} s{came}"
         f" and {stuck} cannot roll back: {refused.why}; lower max_interval"

@@ -19,8 +19,9 @@ def mass_properties(body: str, parameters: Parameters) -> MassProperties | None:
     names = [f"{body}.mass", f"{body}.gravity", *(f"{body}.inertia[{i}]" for i in (1, 2, 3))]
     if any(name not in parameters for name in names):
         return None
-    mass, gravity, *inertia = (parameters[name] for name in names)
-    return MassProperties(mass, np.array(inertia), gravity)
+    mass, gravity, xx, yy, zz = (parameters[name] for name in names)
+    xy, xz, yz = (parameters.get(f"{body}.inertia_products[{i}]", 0.0) for i in (1, 2, 3))
+    return MassProperties(mass, np.array([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]), gravity)
 
 
 def motion_of(channels: Channels, body: str) -> Motion | None:

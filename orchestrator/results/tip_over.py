@@ -29,7 +29,7 @@ UP = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Of the whole vehicle: kg, kg m2 about the axes of B, m/s2."""
+    """Of the whole vehicle: kg, the tensor (3, 3) in kg m2 about the origin of B, m/s2."""
 
     mass: float
     inertia: Array
@@ -81,10 +81,10 @@ def edges(pads: Array, motion: Motion, of: MassProperties | None) -> Edges:
         return Edges(pairs, angle, None, None)
     barrier = of.mass * of.gravity * level * rho * (1.0 - np.cos(angle))
     turn = Rotation.from_quat(motion.quaternion, scalar_first=True)
-    spin = turn.apply(of.inertia * motion.rate)
+    spin = turn.apply(motion.rate @ of.inertia)
     outward = np.sum(u * (spin[:, None, :] + of.mass * np.cross(r, motion.velocity[:, None, :])), axis=2)
     own = np.stack([turn.apply(u[:, k], inverse=True) for k in range(len(pairs))], axis=1)
-    rotation = 0.5 * outward**2 / (np.sum(own**2 * of.inertia, axis=2) + of.mass * rho**2)
+    rotation = 0.5 * outward**2 / (np.sum(own @ of.inertia * own, axis=2) + of.mass * rho**2)
     energy = np.where(angle >= 0.0, barrier - rotation * (outward > 0.0), rotation * (outward < 0.0) - barrier)
-    kinetic = 0.5 * of.mass * np.sum(motion.velocity**2, axis=1) + 0.5 * np.sum(of.inertia * motion.rate**2, axis=1)
+    kinetic = 0.5 * of.mass * np.sum(motion.velocity**2, axis=1) + 0.5 * np.sum(motion.rate @ of.inertia * motion.rate, axis=1)
     return Edges(pairs, angle, energy, np.where(angle >= 0.0, barrier, -barrier) - kinetic[:, None])

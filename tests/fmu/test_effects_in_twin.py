@@ -145,6 +145,27 @@ def test_an_effect_at_null_leaves_the_landing_as_it_was_to_the_last_bit(name: st
         np.testing.assert_array_equal(land(effect, others).rows, base.rows)
 
 
+@pytest.mark.parametrize("start", [20_000.0, 369_939.9])
+def test_a_run_on_another_clock_is_the_same(fmus: dict[str, Path], start: float) -> None:
+    """Corners of a firing are met, and no interval is lost, where instants are known to 6e-11 s only: Apollo's own clock.
+
+    0.6 s from 10 m up, a firing of 1 kN m from 0.1037 s on. Tolerance 1e-10 rad/s: 6e-11 s of its 0.06 rad/s2 is 4e-12; 1e-9 m.
+    """
+    twin, ends = Twin(fmus["LunarLander"]), []
+    values: dict[str, Value] = {"position_start[1]": 10.0, "rcs.torque[2]": 1000.0, "rcs.start": 0.1037, "tolerance": 1e-7}
+    for begin in (0.0, start):
+        twin.unit.set_up(begin, begin + 10.0, values)
+        twin.unit.exchange()
+        twin.unit.begin()
+        for n in range(30):
+            assert twin.unit.step(begin + 0.02 * n, 0.02) is Status.OK
+        ends.append({name: float(y) for name, y in zip(OUTPUTS, twin.y, strict=True)})
+    twin.unit.close()
+    for name in OUTPUTS[:9]:
+        assert ends[1][name] == pytest.approx(ends[0][name], abs=1e-10 if "angular" in name else 1e-9), name
+    assert ends[0]["body.angular_velocity[2]"] == pytest.approx(0.4963 * 1000.0 / 17409.0, rel=0.02)
+
+
 def test_a_firing_without_torque_may_begin_at_any_time(land: Land, base: Flight) -> None:
     np.testing.assert_array_equal(land(EFFECTS["rcs_pulse"], {"start": 0.1037}).rows, base.rows)
 

@@ -78,6 +78,15 @@ def test_a_unit_that_hangs_ends_the_run_with_its_name_and_the_results_so_far(tmp
     assert (out / "summary.json").is_file()
 
 
+def test_a_unit_that_hangs_in_its_trial_before_the_run_is_named_too(tmp_path: Path) -> None:
+    path = scenario(tmp_path, step_timeout=1.0)
+    command = [sys.executable, *RUN, str(path), "--out", str(tmp_path / "out"), "--set", "odd.hang_from=0.0"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False, env=os.environ)
+    assert done.returncode == 3, done.stderr
+    assert done.stderr.startswith("error: odd: has not come back from doStep at t = 0 s for 1 s")
+    assert done.stderr.count("\n") == 1
+
+
 ALONE = {"units": {name: {"isolate": True} for name in ("odd", "even")}}
 
 

@@ -149,7 +149,7 @@ def test_a_run_goes_on_from_the_middle_of_a_search(at: int) -> None:
         return prepared(System(units, links(), recorded=[["x"], [], [], [], []], located=[[], [], [], ["on"], []]), FINE)
 
     whole, resumed, taken = made(), made(), []
-    whole.run(lambda _: taken.append(take(whole)) if whole.events.aim else None)
+    whole.run(lambda _: taken.append(take(whole)) if whole.events.aim > whole.time else None)
     assert len(taken) > 2
     put(resumed, through_a_file(taken[at]))
     assert resumed.events.aim > resumed.time
@@ -164,3 +164,23 @@ def test_the_interval_comes_back_only_as_far_as_the_estimate_allows() -> None:
     assert resume(verdict, 100_000, 4_000_000, 1e-8, limits) == 900_000
     assert resume(verdict, 100_000, 4_000_000, nan, limits) == 200_000
     assert resume(verdict._replace(unresolved=True), 100_000, 4_000_000, 1e-8, limits) == 200_000
+
+
+def test_a_time_announced_just_past_the_stop_does_not_carry_the_run_beyond_it() -> None:
+    master = ran([agenda((0.10003,)), agenda((), name="other")], replace(FREE, max_interval=1.5e-3))
+    assert master.time == 100_000_000
+    assert all(row.time + row.interval <= 0.1 + 1e-12 for row in master.log)
+
+
+@pytest.mark.parametrize("start", [-0.05, -0.1])
+def test_before_zero_times_are_met_and_nothing_is_sought_that_is_not(start: float) -> None:
+    """Also one announced for 0 s itself; a run that stops at or before 0 s ends."""
+    units = [agenda((-0.0321, 0.0)), switch(-0.0171)]
+    master = Master(System(units, [], located=[[], ["on"]]), FREE)
+    master.initialise(start, start + 0.1, [{}, {}])
+    master.prepare()
+    master.run()
+    assert {-32_100_000, 0} <= set(ends(master))
+    assert ends(master)[-1] == round((start + 0.1) * NANOSECONDS)
+    assert all(row.interval > 0.0 and row.limit != "event " for row in master.log)
+    assert any(row.limit == "event switch.on" and row.accepted for row in master.log)

@@ -13,6 +13,7 @@ from master_samples import error_of as oscillator_error
 from master_samples import links, mass, oscillator, prepared, spring
 from quarter_vehicle import error_of, pad_steps, peak, quarter_vehicle
 
+from orchestrator.master.interface_newton import InterfaceNewton
 from orchestrator.master.settings import MasterSettings
 from orchestrator.master.slave import Variable
 from orchestrator.master.system import Link, Scheme, System
@@ -115,3 +116,21 @@ def test_passes_stay_where_anything_between_two_units_comes_with_its_mean() -> N
     told.interface = replace(told.interface, variables={**told.interface.variables, "position": Variable("position", causality="input")})
     master = prepared(System([mass("a", 1.0, 0.0), heard, told], [*links(), *extra]), MasterSettings())
     assert {record.scheme for record in master.connections()} == {"fixed-point"}
+
+
+def test_an_iterate_that_shoots_away_does_not_loosen_what_is_asked_afterwards() -> None:
+    """g(z) = 1001 - 1000 z about z = 1: the first answers are a million times what is accepted in the end."""
+    newton = InterfaceNewton(np.ones(1), 0)
+    newton.note(np.zeros(1))
+    newton.begin(1e-3)
+    z, seen = np.zeros(1), []
+    for _ in range(3):
+        g = 1001.0 - 1000.0 * z
+        seen.append(abs(float(g[0])))
+        z = z + newton.correct(z, g, np.zeros(0))
+    assert max(seen) > 1e5
+    assert z[0] == pytest.approx(1.0, rel=1e-9)
+    newton.correct(z, 1001.0 - 1000.0 * z, np.zeros(0))
+    newton.keep()
+    newton.note(z)
+    assert newton.share(np.array([1e-3])) == pytest.approx(1e-3, rel=1e-6)

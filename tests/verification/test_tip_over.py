@@ -15,10 +15,10 @@ from scipy.spatial.transform import Rotation
 from orchestrator.results.tip_over import MassProperties, Motion, edges
 
 A, H = 3.0, 3.62
-MOON = MassProperties(7063.5, np.array([16492.0, 17409.0, 20800.0]), 1.63)
+MOON = MassProperties(7063.5, np.diag([16492.0, 17409.0, 20800.0]), 1.63)
 SQUARE = np.array([[0.0, A, A], [0.0, -A, A], [0.0, -A, -A], [0.0, A, -A]])
 RHO = math.hypot(A, H)
-INERTIA = MOON.inertia[2] + MOON.mass * RHO**2  # about an edge along Z
+INERTIA = MOON.inertia[2, 2] + MOON.mass * RHO**2  # about an edge along Z
 
 
 def over(velocity=(0.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0), turn=None, height=H):
