@@ -5,6 +5,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from fmi_c_sample import c_sample
 from fmi_samples import oscillator
 
 from orchestrator.campaign.crew import Crew
@@ -70,3 +71,15 @@ def test_a_scheduler_that_is_not_there_is_one_line(monkeypatch: pytest.MonkeyPat
     nowhere = "tcp://127.0.0.1:9"
     with pytest.raises(UserError, match=f"^--scheduler {nowhere}: no scheduler with a worker answers within 1 s"), Crew(scheduler=nowhere):
         pass
+
+
+@pytest.mark.slow
+def test_a_landing_that_kills_its_workers_is_given_up_and_those_that_waited_for_them_are_not(tmp_path: Path) -> None:
+    """A worker takes all that are queued for it along when it dies: of three landings the first crashes, and dask blames two."""
+    path = tmp_path / "odd.toml"
+    fmu = c_sample()
+    path.write_text(f'stop_time = 0.2\nfmus = "{fmu.parent.as_posix()}"\n[units.odd]\nfmu = "{fmu.stem}"\n')
+    with Crew(workers=1) as crew:
+        landings = crew.fly_all(Base.read(path), [["odd.crash_from=0.1"], ["odd.wall=0.15"], []])
+    assert [landing.error[:24] for landing in landings[1:]] == ["", ""]
+    assert landings[0].error == "odd.toml: 3 workers died over this landing; fly it alone to see why"
