@@ -9,7 +9,7 @@ from .bounds import LARGEST, Floats, Slots
 from .records import Record
 
 SHELL_STATES = ("shell.phase", "shell.stale", "shell.start_time")  # the shell's own hidden states, at the end of the memory
-UNEVEN = 1e-3  # of a quaternion's length: a sender that does not normalise it may be off by so much
+UNEVEN = 0.1  # of a quaternion's length: laws normalise it; what is further off is no attitude that was meant
 MOST_ACCESSES = 1000  # a host asks for the same few sets of variables all the time; one that does not is not to fill the memory
 
 Access = tuple[Slots | slice, bool]  # where, and whether all of it are inputs
@@ -69,7 +69,7 @@ class Layout:
         """A complaint about the first input quaternion that is none of a rotation."""
         for where in self.rotations:
             w, x, y, z = memory[where].tolist()
-            if not abs(w * w + x * x + y * y + z * z - 1.0) <= 2.0 * UNEVEN:
+            if not abs((w * w + x * x + y * y + z * z) ** 0.5 - 1.0) <= UNEVEN:
                 name = self.scalars[where.start].record.name
                 return f"{name} is ({w:g}, {x:g}, {y:g}, {z:g}), expects length 1, to {UNEVEN:g}"
         return None
