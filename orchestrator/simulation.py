@@ -32,6 +32,13 @@ Progress = Callable[[float], None]
 START_TRIES = 4
 
 
+def _leave(message: str) -> None:
+    """End the process with a line: what a unit that hangs or has crashed leaves no other way."""
+    sys.stderr.write(f"error: {message}\n")
+    sys.stderr.flush()
+    os._exit(RunError.exit_code)
+
+
 class Simulation:
     """Loaded units under a master; `run` or `resume` once."""
 
@@ -118,23 +125,13 @@ class Simulation:
 
         def say(signal: str) -> None:
             accused = self.master.watchdog.accused(signal) or f"{FmuUnit.called} ({signal}); mend the unit"
-            if self.master.watchdog.on_hang is not None:
-                self.master.watchdog.on_hang(accused)
-            sys.stderr.write(f"error: {accused}\n")
-            sys.stderr.flush()
-            os._exit(RunError.exit_code)
+            (self.master.watchdog.on_hang or _leave)(accused)
 
         return nullcontext() if self.on_hang is None else last_words(say)
 
     def _watch_trials(self) -> None:
         """Before the run there is nothing to be kept of a unit that hangs, but its name."""
-
-        def leave(message: str) -> None:
-            sys.stderr.write(f"error: {message}\n")
-            sys.stderr.flush()
-            os._exit(RunError.exit_code)
-
-        self.master.watchdog.on_hang = None if self.on_hang is None else leave
+        self.master.watchdog.on_hang = None if self.on_hang is None else _leave
 
     def _watch(self) -> None:
         on_hang = self.on_hang

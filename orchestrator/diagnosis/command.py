@@ -44,11 +44,12 @@ def diagnose(
     from orchestrator.diagnosis.outcome import EXIT
     from orchestrator.diagnosis.present import clear_earlier, present
     from orchestrator.diagnosis.report import terminal_summary
+    from orchestrator.diagnosis.revision import REVISED
 
     path = find_scenario(scenario)
     folder = out or Path("results") / f"{path.stem}-diagnosis"
     request = Request(path, measured, holdout or (), effects or (), folder, seed, workers or cpu_count() or 1, overrides or (), budget)
-    if path.resolve().parent == folder.resolve() and (path.name == "revised.toml" or path.match("landing_*.toml")):
+    if path.resolve().parent == folder.resolve() and (path.name == REVISED or path.match("landing_*.toml")):
         raise UserError(f"{path}: would be written over by its own diagnosis; give another --out")
     can_take_results(folder)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored

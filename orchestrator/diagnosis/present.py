@@ -26,7 +26,7 @@ from orchestrator.diagnosis.proof import WINNER, Observed, Proof, prove
 from orchestrator.diagnosis.recorded import contact_columns
 from orchestrator.diagnosis.report import ChannelCourse, Contact, LandingCourses, RestValue, verdict_sentence, write_report
 from orchestrator.diagnosis.report.words import unit_of
-from orchestrator.diagnosis.revision import inserts_of, write_landing, write_revision
+from orchestrator.diagnosis.revision import REVISED, inserts_of, write_landing, write_revision
 from orchestrator.diagnosis.setup import Setup
 from orchestrator.diagnosis.stages import look
 from orchestrator.diagnosis.tasks.predict import Predict
@@ -36,7 +36,7 @@ from orchestrator.errors import OrchestratorError
 from orchestrator.scenario.locate import find_fmu
 
 Array = NDArray[np.float64]
-LEFT = ("report.html", "revised.toml", "landing_*.toml", "before_after.*", "figures/*.png", "courses/*", "found/*")
+LEFT = ("report.html", REVISED, "landing_*.toml", "before_after.*", "figures/*.png", "courses/*", "found/*")
 """What a verdict leaves in its folder beside diagnosis.json."""
 
 

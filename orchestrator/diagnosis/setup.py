@@ -224,7 +224,8 @@ def set_up(
     addresses = Addresses(blueprint)
     vehicle = vehicle_of(addresses, effects, overrides)
     base = vehicle.base
-    bases, observations, nuisances, stops = [], [], [], []
+    bases, observations, nuisances = [], [], []
+    stop = blueprint.scenario.table.stop_time - blueprint.scenario.table.start_time
     for k, one in enumerate(measured):
         own = dict(base)
         landing = SHARED if len(measured) == 1 else k
@@ -232,10 +233,9 @@ def set_up(
             nuisances += nuisances_of(vehicle, prior, landing, own)
         nuisances.append(Coordinate(ORIGIN, ((ORIGIN, 1.0),), ORIGIN_SIGMA, unit="s", landing=landing, step=0.5))
         observation = observation_of(addresses, one)
-        _cut_to_the_landing(one, blueprint.scenario.table.stop_time - blueprint.scenario.table.start_time)
+        _cut_to_the_landing(one, stop)
         bases.append(own)
         observations.append(observation)
-        stops.append(blueprint.scenario.table.stop_time - blueprint.scenario.table.start_time)
     hypotheses, skipped = [], {}
     for name, effect in effects.items():
         adds = effect.insert is not None and not addresses.has(effect.insert.unit)
@@ -246,7 +246,7 @@ def set_up(
             skipped[name] = found
         else:
             hypotheses.append(found)
-    landings = Landings(observations, bases, stops)
+    landings = Landings(observations, bases, [stop] * len(measured))
     return Setup(
         addresses,
         vehicle.make,

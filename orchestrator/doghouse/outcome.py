@@ -12,7 +12,7 @@ from typing import Any
 from orchestrator.doghouse.flying import Scenario
 from orchestrator.doghouse.landing import BOUNDARIES, UNITS, Inputs, Margins
 from orchestrator.doghouse.model import Doghouse
-from orchestrator.doghouse.search import Bracket, Ray, failures
+from orchestrator.doghouse.search import Bracket, Ray, landings
 
 Checked = Mapping[tuple[float, str], tuple[Margins, Margins]]
 """(ray, boundary) -> both landings of the bracket by the separate units."""
@@ -43,7 +43,8 @@ class Outcome:
             "differ": [point for name in BOUNDARIES for point in points[name] if point["check"] and not point["check"]["agrees"]],
             "rungs": [self._rung(ray, speed) for ray in self.rays for speed in ray.rungs],
             "audit": self._audit(),
-            "not_flown": [{"inputs": one.as_dict(), "error": margins.error} for one, margins in failures(self.rays)],
+            "not_flown": [{"inputs": one.as_dict(), "error": margins.error} for one, margins in landings(self.rays) if margins.error],
+            "not_trusted": sum(not margins.trusted for _, margins in landings(self.rays)),
             "varied": self.doghouse.varies.model_dump(),
             "cost": dict(self.cost),
         }

@@ -62,6 +62,8 @@ def _notes(outcome: Outcome) -> list[str]:
     if summary["not_flown"]:
         first = summary["not_flown"][0]["error"]
         notes.append(f"{len(summary['not_flown'])} landings could not be flown to their end and are held to fail ({first})")
+    if summary["not_trusted"]:
+        notes.append(f"{summary['not_trusted']} landings did not hold their tolerance to the end; they count as they ended")
     audit = summary["audit"]
     if audit["landings"]:
         notes.append(f"{audit['landings']} landings at random inside the envelope: {len(audit['failed'])} fail")

@@ -146,12 +146,11 @@ def _speed(inputs: Inputs) -> float:
     return math.hypot(inputs.horizontal_m_s, inputs.vertical_m_s)
 
 
-def failures(rays: Sequence[Ray]) -> list[tuple[Inputs, Margins]]:
-    """Landings of the rungs that could not be flown to their end."""
+def landings(rays: Sequence[Ray]) -> list[tuple[Inputs, Margins]]:
+    """All of the rungs."""
     return [
         (one.at(ray.angle, speed), margins)
         for ray in rays
         for speed, rung in ray.rungs.items()
         for one, margins in zip(ray.combinations, rung, strict=True)
-        if margins.error
     ]

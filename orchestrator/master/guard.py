@@ -51,7 +51,7 @@ class Guard:
 
     @memory.setter
     def memory(self, values: Vector) -> None:
-        for kept, mine in zip(np.split(values, len(self._arrays)) if len(values) else (), self._arrays, strict=False):
+        for kept, mine in zip(np.split(values, len(self._arrays)), self._arrays, strict=True):
             mine[:] = kept
 
     @property

@@ -121,13 +121,28 @@ def test_a_failure_at_random_inside_the_envelope_denies_that_all_lies_outside(tm
     summary = json.loads((tmp_path / "doghouse.json").read_text())
     assert summary["all_outside"] is False
     assert summary["audit"]["failed"][0]["failed"] == ["tip_over"]
+    assert summary["not_trusted"] == 0
     assert set(summary["boundaries"]["tip_over"][0]) >= {"horizontal_m_s", "vertical_m_s", "inputs", "margin"}
+    console = Console(width=160, record=True)
+    console.print(terminal_report(outcome, tmp_path))
+    assert "1 landings inside the certified envelope fail" in console.export_text()
 
 
 def test_a_landing_that_cannot_be_flown_is_held_to_fail():
     lost = margins_of({}, "the unit gave up")
     assert all(lost.fails(name) for name in BOUNDARIES)
     assert lost.error == "the unit gave up"
+
+
+def test_what_could_not_be_flown_is_flown_again_by_the_next_call(tmp_path):
+    """A worker that died, a time limit: nothing that the landing would repeat."""
+    logbook = Logbook(tmp_path / "landings.jsonl")
+    logbook.put("lost", margins_of({}, "the unit gave up"), 1.0)
+    logbook.put("flown", margins_of({"stable": True}, "", trusted=False), 1.0)
+    again = Logbook(tmp_path / "landings.jsonl")
+    assert logbook.get("lost") is not None
+    assert again.get("lost") is None
+    assert again.get("flown").trusted is False
 
 
 def test_a_vehicle_that_turns_too_fast_to_stay_inside_has_no_margin_left():

@@ -7,10 +7,12 @@ Tolerance: the first pass is of order 1, the second of 3 because a mean with its
 
 import numpy as np
 import pytest
-from master_samples import error_of, fixed, oscillator, spring
+from master_samples import error_of, fixed, oscillator, prepared, spring
 
 from orchestrator.errors import UnitError
+from orchestrator.master.function_unit import FunctionUnit
 from orchestrator.master.settings import MasterSettings
+from orchestrator.master.system import Link, System
 
 
 @pytest.mark.parametrize(("passes", "order"), [(1, 1), (2, 3), (3, 4)])
@@ -119,3 +121,18 @@ def test_initialising_again_starts_afresh() -> None:
     assert np.array_equal(master.plan.board.now, before)
 
 
+@pytest.mark.parametrize(("gain", "settles"), [(0.4, True), (-1.5, False)])
+def test_start_values_that_do_not_settle_round_the_system_are_told(gain: float, settles: bool) -> None:
+    """A loop of direct feedthrough: y = 1 + gain x on one side, y = x on the other."""
+    def unit(name: str, gain: float, constant: float) -> FunctionUnit:
+        def out(u: dict[str, float]) -> dict[str, float]:
+            return {"y": constant + gain * u["x"]}
+
+        return FunctionUnit(name, {"x": 0.0}, {}, lambda _, u: out(u), lambda _, u, t, h: out(u), True)
+
+    system = System([unit("amplifier", gain, 1.0), unit("wire", 1.0, 0.0)], [Link(0, "y", 1, "x"), Link(1, "y", 0, "x")])
+    master = prepared(system, MasterSettings(max_interval=1e-3, tolerance=1e9))
+    told = [line for line in master.warnings if "as start values go round the system" in line]
+    assert bool(told) is not settles
+    assert settles or told[0].startswith("amplifier.y: still changes from ") or told[0].startswith("wire.y: still changes from ")
+    assert not settles or master.value(0, "y") == pytest.approx(1.0 / (1.0 - gain), rel=1e-12)

@@ -6,12 +6,14 @@ the turning point to 0.4 deg from the top at least: far above the integrator's e
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from orchestrator.results.geometry import mass_properties
 from orchestrator.results.tip_over import MassProperties, Motion, edges
 
 A, H = 3.0, 3.62
@@ -125,3 +127,26 @@ def test_pads_in_any_order_and_number_give_the_same_edges():
     one, other = (edges(turn.apply(three[list(order)])[None], still, MOON) for order in ((0, 1, 2), (2, 0, 1)))
     assert np.sort(one.angle) == pytest.approx(np.sort(other.angle), abs=1e-12)
     assert one.angle.min() > 0.0
+
+
+def test_products_of_inertia_are_the_same_body_seen_from_turned_axes():
+    """Axes of B turned in the body: tensor, attitude and rates change together, angle and energies must not.
+
+    Tolerance: rounding, 1e-9 of the energies. With the products' sign turned the margin of this body is off by kilojoules.
+    """
+    turn, rate, axes = Rotation.from_rotvec([0.05, 0.1, -0.2]), np.array([0.3, -0.4, 0.6]), Rotation.from_rotvec([0.5, 0.3, -0.7])
+    pads, at, velocity = turn.apply(SQUARE)[None, :, :], turn.apply([[H, 0.0, 0.0]]), np.array([[0.0, 0.8, -0.3]])
+    tensor = axes.inv().as_matrix() @ MOON.inertia @ axes.as_matrix()
+    parameters = {"body.mass": MOON.mass, "body.gravity": MOON.gravity}
+    parameters |= {f"body.inertia[{i + 1}]": tensor[i, i] for i in range(3)}
+    parameters |= {f"body.inertia_products[{k}]": -tensor[i, j] for k, (i, j) in enumerate(((0, 1), (0, 2), (1, 2)), 1)}
+    turned = mass_properties("body", parameters)
+    assert np.abs(turned.inertia - tensor).max() < 1e-9
+    plain = edges(pads, Motion(at, velocity, turn.as_quat(scalar_first=True)[None, :], rate[None, :]), MOON)
+    quaternion = (turn * axes).as_quat(scalar_first=True)[None, :]
+    found = edges(pads, Motion(at, velocity, quaternion, axes.inv().apply(rate)[None, :]), turned)
+    wrong = edges(pads, Motion(at, velocity, quaternion, axes.inv().apply(rate)[None, :]),
+                  replace(turned, inertia=2.0 * np.diag(np.diag(tensor)) - tensor))  # fmt: skip
+    for mine, theirs in zip((found.angle, found.energy, found.secure), (plain.angle, plain.energy, plain.secure), strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-9, abs=1e-6)
+    assert np.abs(wrong.energy - plain.energy).max() > 100.0
