@@ -46,8 +46,9 @@ _FROM = "fmi2Status fmi2DoStep"
 
 def source(fault: str) -> str:
     """The sample's C with another step: the life cycle is the same."""
-    shared, changed = re.subn(r"for \(int i = 2; i < \d; i\+\+\) (.*)->v\[i\] = 1e9;", r"\1->v[6] = 0.05;", SOURCE[: SOURCE.index(_FROM)])
-    assert changed == 2      # where an instance is made and where it is reset
+    start = r"\1->v[6] = 0.05, \1->v[8] = 1e9;"
+    shared, changed = re.subn(r"for \(int i = 2; i < \d; i\+\+\) (.*)->v\[i\] = 1e9;", start, SOURCE[: SOURCE.index(_FROM)])
+    assert changed == 2      # where an instance is made and where it is reset; from v[8] s on, saving crashes
     if fault == "feedthrough":
         get = "for (size_t i = 0; i < n; i++) x[i] = ((Unit*)c)->v[r[i]];"
         assert get in shared
