@@ -39,6 +39,8 @@ class Coordinate:
     """Of z, for differences."""
     fixed: tuple[tuple[str, float], ...] = ()
     """Variables that are set along with it, whatever z is: which term, when a pulse begins."""
+    null: float | None = None
+    """p that moves nothing; without, the mean does not."""
 
     def value(self, z: float) -> float:
         """p of a z, within its limits."""
@@ -49,6 +51,11 @@ class Coordinate:
         """Limits of z."""
         low = 0.0 if self.positive else (self.low - self.mean) / self.sigma
         return low, (self.high - self.mean) / self.sigma
+
+
+def nulls(coordinates: Sequence[Coordinate]) -> Array:
+    """z at which none of the coordinates moves anything."""
+    return np.array([0.0 if c.null is None else (c.null - c.mean) / c.sigma for c in coordinates])
 
 
 def applied(base: Mapping[str, float], coordinates: Sequence[Coordinate], z: Array, landing: int) -> dict[str, float]:

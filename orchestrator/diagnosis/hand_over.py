@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.coordinates import Coordinate, nulls
 from orchestrator.diagnosis.fit import Fit, gauss_newton_step, log_evidence
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis, joined
 from orchestrator.diagnosis.problem import Model, Nobody
@@ -88,8 +88,9 @@ def taken_over(search: Search, fit: Fit, rival: Hypothesis, own: Array) -> tuple
     coordinates = (*search.nuisances, *rival.coordinates)
     model, effect = Model(search.landings, coordinates, Nobody()), Model(search.landings, fit.coordinates[count:], Nobody())
     jacobian = model.whitened(np.column_stack([fit.slopes[:, :count], own]), fit.predicted)
-    z = np.append(fit.z[:count], np.zeros(len(rival.coordinates)))
-    residual = fit.residual + effect.whitened(fit.slopes[:, count:], fit.predicted) @ fit.z[count:]
+    z = np.append(fit.z[:count], np.zeros(len(rival.coordinates)))  # of one known from other landings: as it was there
+    residual = fit.residual + effect.whitened(fit.slopes[:, count:], fit.predicted) @ (fit.z[count:] - nulls(effect.coordinates))
+    residual = residual + jacobian[:, count:] @ nulls(rival.coordinates)
     for _ in range(SWEEPS):
         step = gauss_newton_step(jacobian, residual, z, coordinates, 1.0)
         z, residual = z + step, residual - jacobian @ step

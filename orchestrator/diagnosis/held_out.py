@@ -12,6 +12,7 @@ from orchestrator.diagnosis.adequacy import adequacy
 from orchestrator.diagnosis.coordinates import Coordinate
 from orchestrator.diagnosis.crew import Crew
 from orchestrator.diagnosis.fit import Fit
+from orchestrator.diagnosis.hand_over import handed_over
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.search import LEAST, Search, Told, UnflyableError, renoised
 from orchestrator.diagnosis.setup import Setup
@@ -28,7 +29,7 @@ def posterior_of(fit: Fit, nuisances: int) -> list[Coordinate]:
     for i in range(nuisances, len(fit.z)):
         c = fit.coordinates[i]
         value, sigma = fit.estimate(i)
-        found.append(replace(c, mean=value, sigma=max(sigma, 1e-6 * c.sigma), positive=False, step=1.0))
+        found.append(replace(c, mean=value, sigma=max(sigma, 1e-6 * c.sigma), positive=False, step=1.0, null=c.mean))
     return found
 
 
@@ -57,11 +58,13 @@ def ask_holdouts(
 
 
 def settled(search: Search, held: Setup, known: Mapping[str, Hypothesis], fits: dict[str, Fit]) -> dict[str, Fit]:
-    """The others tried from the best one's nuisances, since none is to lose for its own alone; then all seen by the noise that is left."""
+    """The others tried from the best one's nuisances, with nothing in its effect's place and with what it does handed over to them, since
+    none is to lose for its nuisances alone; then all seen by the noise that is left."""
     best = best_of(fits)
     rivals = [name for name in fits if name not in (NULL.name, best)]
     if rivals:
         fits = search.back_substituted(fits, list(known.values()), rivals, best, margin=np.inf)
+        fits = handed_over(search, fits, list(known.values()), best_of(fits))
     hear_noise(held, search.crew, fits[best_of(fits)], best=True)
     return {name: renoised(held.landings, fit) for name, fit in fits.items()}
 

@@ -1,6 +1,7 @@
 """A winner's effect handed over: rivals that look like it with other nuisances only."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from orchestrator.diagnosis.hand_over import arranged, handed_over, handed_over_
 from orchestrator.diagnosis.hypothesis import NULL, Hypothesis
 from orchestrator.diagnosis.problem import Model
 from orchestrator.diagnosis.search import Search
+from orchestrator.diagnosis.tasks.fits import FitAt, Point
 from orchestrator.diagnosis.tasks.predict import slopes_beside
 
 Array = NDArray[np.float64]
@@ -101,6 +103,43 @@ def test_beside_one_effect_of_a_pair_the_other_goes_over_to_its_rival() -> None:
     assert fit.coordinates == (*NUISANCES, *pair.coordinates)
     assert fit.z == pytest.approx([0.9, 0.5, -0.7], abs=0.03)
     assert fit.chi2 == pytest.approx(best.chi2, abs=0.5)
+
+
+def known(name: str, value: float) -> Hypothesis:
+    """An effect as another landing left it: its mean is what was found there, and moves something."""
+    return Hypothesis(name, (replace(coordinate(name), mean=value, sigma=0.05, null=0.0),))
+
+
+def test_an_effect_known_from_another_landing_is_handed_over_whole() -> None:
+    """Another ground height: west, as little as it may differ from what is known of it, needs n where east does not."""
+    search = search_of({"east": 0.7, "n": 0.2})
+    effects = [known("east", 0.7), known("west", -0.7)]
+    fits = {}
+    for h, n in zip(effects, (0.2, 0.0), strict=True):
+        model, at = Model(search.landings, (*NUISANCES, *h.coordinates), Warped()), np.array([n, 0.0])
+        predicted = model.predict(at)
+        assert predicted is not None
+        fits[h.name] = seen_from(model, at, predicted, model.slopes(at, predicted))
+    (own,) = search.crew.run([slopes_beside(search.landings, fits["east"].coordinates, fits["east"].z, fits["east"].predicted,
+                                            effects[1].coordinates)])  # fmt: skip
+    promised, z = taken_over(search, fits["east"], effects[1], own)
+    assert z == pytest.approx([0.9, 0.0], abs=0.2)
+    found = handed_over(search, fits, effects, "east")
+    assert found["west"].log_evidence == pytest.approx(promised, abs=0.5)
+    assert found["west"].log_evidence > fits["west"].log_evidence + 100.0
+
+
+def test_an_effect_that_is_known_is_there_where_its_fit_begins() -> None:
+    """The prediction without it is not taken for the one with it."""
+    search = search_of({"east": 0.7, "n": 0.2})
+    h, n = known("east", 0.7), np.array([0.2])
+    model = Model(search.landings, NUISANCES, Warped())
+    without = model.predict(n)
+    assert without is not None
+    point = Point(n, without, model.slopes(n, without), np.inf)
+    fit = FitAt(search.landings, (*NUISANCES, *h.coordinates), point, np.array([0.2, 0.0]), steps=0)(Warped())
+    assert fit is not None
+    assert fit.predicted == pytest.approx(Model(search.landings, (*NUISANCES, *h.coordinates), Warped()).predict(fit.z))
 
 
 def test_a_fit_arranged_otherwise_is_the_same_fit() -> None:

@@ -151,3 +151,14 @@ def test_noise_that_a_fit_told_keeps_what_rest_and_statement_say_for_reference()
 
 def test_what_a_fit_leaves_that_does_not_explain_the_data_tells_no_colour() -> None:
     assert noise_of(never_at_rest(np.random.default_rng(6), 0.8), None)[0].rho == 0.0
+
+
+def test_a_short_rest_under_the_colour_of_the_whole_does_not_make_noise_larger_than_known() -> None:
+    """Noise of one size and colour throughout, 1.18 times as large as stated; 41 samples a row at rest tell its size and colour together.
+    Under the whole's colour alone the variance seems 1.2 times too large in 12 % of such data, under the rest's alone in 14 %.
+    """
+    random = np.random.default_rng(3)
+    times = np.arange(106) * 0.03
+    rows = [[coloured(random, times, Noise(0.3 * 1.18, 0.5, 0.03)) for _ in range(3)] for _ in range(300)]
+    found = [noise_of(at_rest(np.array(it), times, 0.3, times[-42]), None, FOLLOWED)[0].understated for it in rows]
+    assert np.mean(np.array(found) > 1.2) < 0.1

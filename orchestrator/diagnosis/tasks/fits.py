@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.coordinates import Coordinate, nulls
 from orchestrator.diagnosis.fit import Fit, fitted, refined, seen_from
 from orchestrator.diagnosis.landing import Lander
 from orchestrator.diagnosis.problem import Landings, Model
@@ -61,7 +61,7 @@ class FitAt:
         count = self.point.slopes.shape[1]
         mine = tuple(range(count, len(self.coordinates)))
         model = Model(self.landings, self.coordinates, lander, self.point.horizon)
-        same = np.array_equal(self.z[:count], self.point.z) and not self.z[count:].any()
+        same = np.array_equal(self.z, np.append(self.point.z, nulls(self.coordinates[count:])))
         predicted = self.point.predicted if same else model.own(self.z)
         if predicted is None:
             return None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.diagnosis.coordinates import Coordinate
+from orchestrator.diagnosis.coordinates import Coordinate, nulls
 from orchestrator.diagnosis.landing import Course, Lander
 from orchestrator.diagnosis.observation import of_units
 from orchestrator.diagnosis.problem import Landings, Model
@@ -49,7 +49,7 @@ class Slopes:
 
 def slopes_beside(landings: Landings, coordinates: Sequence[Coordinate], z: Array, predicted: Array, own: Sequence[Coordinate]) -> Slopes:
     """Those of an effect's own coordinates at its null, beside others at a point whose prediction is known."""
-    count, every = len(z), np.append(z, np.zeros(len(own)))
+    count, every = len(z), np.append(z, nulls(own))
     return Slopes(landings, (*coordinates, *own), every, predicted, tuple(range(count, len(every))), count)
 
 

@@ -80,7 +80,8 @@ class Probe:
         around = Model(self.landings, (*nuisances, *held), model.lander, self.point.horizon)
         if self._hopeless(around, base, slopes, own, ceiling):
             return None
-        fit = fitted(around, np.concatenate([self.point.z, own]), slopes, steps=4, beside=base, ceiling=ceiling)
+        z = np.concatenate([self.point.z, own])
+        fit = fitted(around, z, slopes, steps=4, beside=base, ceiling=ceiling, renew=range(count))
         if fit is None or fit.objective > ceiling:
             return None
         mine = range(count, len(self.coordinates))
