@@ -46,16 +46,20 @@ class Coordinate:
         """p of a z, within its limits."""
         return min(max(self.mean + self.sigma * z, self.low), self.high)
 
+    def scaled(self, p: float) -> float:
+        """z of a p."""
+        return (p - self.mean) / self.sigma
+
     @property
     def bounds(self) -> tuple[float, float]:
         """Limits of z."""
-        low = 0.0 if self.positive else (self.low - self.mean) / self.sigma
-        return low, (self.high - self.mean) / self.sigma
+        low = 0.0 if self.positive else self.scaled(self.low)
+        return low, self.scaled(self.high)
 
 
 def nulls(coordinates: Sequence[Coordinate]) -> Array:
     """z at which none of the coordinates moves anything."""
-    return np.array([0.0 if c.null is None else (c.null - c.mean) / c.sigma for c in coordinates])
+    return np.array([0.0 if c.null is None else c.scaled(c.null) for c in coordinates])
 
 
 def applied(base: Mapping[str, float], coordinates: Sequence[Coordinate], z: Array, landing: int) -> dict[str, float]:

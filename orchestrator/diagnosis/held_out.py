@@ -77,11 +77,10 @@ def predictive(first: Fit, held: Fit, both: Sequence[tuple[int, int]]) -> float:
     both: places of what they share, in the first fit and in the second
     """
     a, b = np.array(both, dtype=int).reshape(-1, 2).T
-    sigma = np.array([c.sigma for c in held.coordinates])[b]
-    known = np.array([first.estimate(i)[0] for i in a.tolist()])
-    scale = np.array([c.sigma for c in first.coordinates])[a] / sigma
+    pairs = [(first.coordinates[i], float(first.z[i]), held.coordinates[j]) for i, j in both]
+    scale = np.array([before.sigma / now.sigma for before, _, now in pairs])
     centre, precision = np.zeros(len(held.z)), np.eye(len(held.z))
-    centre[b] = (known - np.array([c.mean for c in held.coordinates])[b]) / sigma
+    centre[b] = [now.scaled(before.value(z)) for before, z, now in pairs]
     precision[np.ix_(b, b)] = np.linalg.inv(first.covariance[np.ix_(a, a)] * np.outer(scale, scale))
     hessian = held.jacobian.T @ held.jacobian + precision
     off = held.z - centre

@@ -17,7 +17,7 @@ class Hypothesis:
 
     def scaled_starts(self) -> list[tuple[float, ...]]:
         """The starts as z."""
-        return [tuple((p - c.mean) / c.sigma for p, c in zip(start, self.coordinates, strict=True)) for start in self.starts]
+        return [tuple(c.scaled(p) for p, c in zip(start, self.coordinates, strict=True)) for start in self.starts]
 
     @property
     def slots(self) -> set[str]:

@@ -88,7 +88,7 @@ def noise_of(tracks: Sequence[Stretch], colour: float | None, followed: float | 
     known = sum(len(u) - LOST for u in quiet)
     if followed is not None:
         factor, rho = _likeliest([t.residual / t.sigma for t in tracks], followed, round(followed), colour)
-        reference = max(_likeliest(quiet, LOST, LOST, it)[0] for it in (rho, colour))  # a short rest tells size and colour together
+        reference = max(_likeliest(quiet, LOST, LOST, it)[0] for it in {rho, colour})  # a short rest tells size and colour together
     elif known >= STILL:
         factor, rho = _likeliest(quiet, LOST, LOST, colour)
         reference = factor
